@@ -37,3 +37,4 @@ mod statics;
 mod stress;
 mod terms;
 mod watch;
+mod words;

@@ -7,12 +7,12 @@ use crate::vec3::axpy;
 use isosheet_mesh::{EdgeId, VertexId};
 
 impl FrontMap {
-    /// As [`FrontMap::realise`], and checks the two conditions that the paper's definition of a realisation has
-    /// besides: two edges meet, if at all, in a common end, and no vertex lies on an edge of which it is no end.
-    /// (Edges of a sheet in space rarely meet, even where its faces pass through each other, which
+    /// As [`FrontMap::realise`], and checks the two conditions that the paper's definition of a realisation
+    /// has besides: two edges meet, if at all, in a common end, and no vertex lies on an edge of which it is
+    /// no end. (Edges of a sheet in space rarely meet, even where its faces pass through each other, which
     /// `isosheet_geometry::crossings` finds.) Edges meet where they come closer than the [closure
-    /// tolerance](super::RealiseOptions::closure_tolerance) times the longer one of them. Every pair is looked
-    /// at: the time grows as the square of the number of edges.
+    /// tolerance](super::RealiseOptions::closure_tolerance) times the longer one of them. Every pair is
+    /// looked at: the time grows as the square of the number of edges.
     ///
     /// # Errors
     /// Errors of [`FrontMap::realise`], and [`RealiseError::EdgesMeet`] naming the first pair that meets.
@@ -136,7 +136,8 @@ mod tests {
     proptest! {
         #![proptest_config(isosheet_random::cases(256))]
 
-        /// The distance is the least of those of points on a fine grid of the two segments, within its spacing.
+        /// The distance is the least of those of points on a fine grid of the two segments, within its
+        /// spacing.
         #[test]
         fn distances_of_segments(c in prop::collection::vec(-1.0..1.0f64, 12)) {
             let p = |i: usize| [c[i], c[i + 1], c[i + 2]];

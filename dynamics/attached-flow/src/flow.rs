@@ -26,8 +26,8 @@ pub(super) struct InAir {
 /// n_i . (w + sum_j q_ij Gamma_j + wake - v_i) = 0.
 /// ```
 ///
-/// The row of the wake that the step sheds is part of the sum, so that no vortex is at the trailing edges (the
-/// condition of Kutta).
+/// The row of the wake that the step sheds is part of the sum, so that no vortex is at the trailing edges
+/// (the condition of Kutta).
 pub(super) struct Flow {
     pub(super) shape: LatticeShape,
     /// With the line that the step sheds.
@@ -53,8 +53,8 @@ impl InAir {
         self.wind.velocity((*at).into(), t).into()
     }
 
-    /// The flow at a time (seconds) and positions (`3V`, metres) after a past that has been carried there, which
-    /// grows.
+    /// The flow at a time (seconds) and positions (`3V`, metres) after a past that has been carried there,
+    /// which grows.
     ///
     /// # Errors
     /// [`LinalgError::Singular`] where faces lie on each other or the wind is not finite.
@@ -115,8 +115,8 @@ impl InAir {
         circulation
     }
 
-    /// The derivatives of the circulation by the velocities of the vertices of the lattice: for each of these the
-    /// columns of its three components.
+    /// The derivatives of the circulation by the velocities of the vertices of the lattice: for each of these
+    /// the columns of its three components.
     pub(super) fn circulation_derivative(&self, flow: &Flow) -> Vec<f64> {
         let count = self.lattice.faces.len();
         let mut columns = vec![0.0; 3 * self.lattice.vertices.len() * count];
@@ -161,8 +161,8 @@ impl InAir {
         self.lattice.edges.iter().map(force).collect()
     }
 
-    /// The force on each corner of a face by the rate of change of its circulation, newtons times square seconds
-    /// per square metre.
+    /// The force on each corner of a face by the rate of change of its circulation, newtons times square
+    /// seconds per square metre.
     pub(super) fn rate_force(&self, shape: &LatticeShape, face: usize) -> Vector3<f64> {
         -self.density * shape.areas[face] / 3.0 * shape.normals[face]
     }

@@ -6,8 +6,8 @@ use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Part of the height of a face at the boundary by which its ring ends inside of the boundary; at trailing edges
-/// it ends there, and its centre is that of a ring that ends outside.
+/// Part of the height of a face at the boundary by which its ring ends inside of the boundary; at trailing
+/// edges it ends there, and its centre is that of a ring that ends outside.
 ///
 /// Vortices at a quarter and no flow at three quarters of a panel make a plate of panels in a row exact
 /// (James, Comput. Methods Appl. Mech. Eng. 1, 1972); at the tips of a wing a quarter is best too (Hough, J.
@@ -269,8 +269,8 @@ impl Mesh<'_> {
         self.lengths[edge.index()]
     }
 
-    /// The faces of the lattice around a vertex at its rim, in the order of their orientation from one rim edge
-    /// to the other one, each by its corners after the vertex; empty within the lattice.
+    /// The faces of the lattice around a vertex at its rim, in the order of their orientation from one rim
+    /// edge to the other one, each by its corners after the vertex; empty within the lattice.
     fn fan(&self, v: VertexId) -> Vec<[VertexId; 2]> {
         let own = |f: &&FaceId| self.numbers.contains_key(*f);
         let around = self.topology.vertex_faces(v).iter().filter(own);

@@ -45,9 +45,9 @@ impl ImplicitForce for Attached {
 /// f(x) = f(y) + J d,   U(x) = -((f + g) . d + d . S d / 2),   d = x - y,   S = (J + J^T) / 2,
 /// ```
 ///
-/// where the derivative `J` is that by the velocities. Most of it is the mass of the air that moves along with
-/// the sheet, `-m / h^2`, which has an energy; the part without one, `g = (J - S) d`, lags behind, and so do the
-/// place of the lattice and the velocity along it, until `U` has the forces of the end of the step.
+/// where the derivative `J` is that by the velocities. Most of it is the mass of the air that moves along
+/// with the sheet, `-m / h^2`, which has an energy; the part without one, `g = (J - S) d`, lags behind, and
+/// so do the place of the lattice and the velocity along it, until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FlowStep {
     attached: Attached,
@@ -269,8 +269,8 @@ impl FlowStep {
         Ok(())
     }
 
-    /// By how much the forces at an iterate are not those of the flow, as a part of the largest: to first order,
-    /// and where that has settled whole.
+    /// By how much the forces at an iterate are not those of the flow, as a part of the largest: to first
+    /// order, and where that has settled whole.
     fn error(&self, x: &[f64], settled: f64) -> f64 {
         let here = self.own(x);
         let forces = self.lagged.forces(&here);

@@ -37,8 +37,8 @@ pub struct CreaseSpring {
     /// When it yields, moments in newton metres; nothing for a spring that always comes back.
     pub yields: Option<Yield>,
     /// Stiffness of what else bends between the middles of the two faces, newton metres per radian, of which
-    /// the stiffness of the spring takes account ([`CreaseSpring::put_in_sheet`]). Nothing where the fold angle
-    /// is the spring's alone.
+    /// the stiffness of the spring takes account ([`CreaseSpring::put_in_sheet`]). Nothing where the fold
+    /// angle is the spring's alone.
     pub in_series: Option<f64>,
 }
 
@@ -54,8 +54,8 @@ impl CreaseSpring {
     /// that is much stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness
     /// at these edges ([`CreaseSprings::bending_beside`],
     /// [`PlateBending::creased`](crate::PlateBending::creased)). Both carry the same moment, so that a crease
-    /// yields at the moment at which it yields by itself. The spring keeps `k_s` ([`CreaseSpring::in_series`]),
-    /// by which [`CreaseSprings::bends_beside`] tells fold and bend apart.
+    /// yields at the moment at which it yields by itself. The spring keeps `k_s`
+    /// ([`CreaseSpring::in_series`]), by which [`CreaseSprings::bends_beside`] tells fold and bend apart.
     ///
     /// `rigidity` is the flexural rigidity `D` in newton metres; with zero the springs stay as they are.
     pub fn put_in_sheet<'a>(
@@ -184,12 +184,13 @@ impl Advice for CreaseError {
 /// their Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
-/// [`Remembering::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
-/// step what they dissipate in it.
+/// [`Remembering::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in
+/// a step what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
-    /// The two faces at each hinge, where all of them together are the bending stiffness of a sheet; else empty.
+    /// The two faces at each hinge, where all of them together are the bending stiffness of a sheet; else
+    /// empty.
     bent: Vec<[FaceId; 2]>,
 }
 
@@ -248,14 +249,14 @@ impl CreaseSprings {
         Ok(Self { hinges, bent })
     }
 
-    /// Springs across seams: each at an edge of a boundary, between the face there and the face at another edge of
-    /// a boundary that is [glued](crate::Glue) to it, whose corner opposite of that edge is given. The angle is
-    /// positive for a valley as seen from the side from which the first face is counter-clockwise, however the
-    /// second one is.
+    /// Springs across seams: each at an edge of a boundary, between the face there and the face at another
+    /// edge of a boundary that is [glued](crate::Glue) to it, whose corner opposite of that edge is given.
+    /// The angle is positive for a valley as seen from the side from which the first face is
+    /// counter-clockwise, however the second one is.
     ///
     /// # Errors
-    /// As [`CreaseSprings::new`]; [`CreaseError::Seam`] naming the first edge that is not one of a boundary, or whose
-    /// other face has a corner on it.
+    /// As [`CreaseSprings::new`]; [`CreaseError::Seam`] naming the first edge that is not one of a boundary,
+    /// or whose other face has a corner on it.
     pub fn across_seams(
         topology: &Topology,
         springs: Vec<(CreaseSpring, VertexId)>,
@@ -309,8 +310,8 @@ impl CreaseSprings {
     ///
     /// On a union-jack grid of squares a bend along grid lines has exactly the energy `D kappa^2 / 2` per
     /// area, one along diagonals twice that. A sheet of rigid rods bends at its edges only: how stiff it is
-    /// in other directions depends on the mesh. One angle at an edge says nothing of the bend along it, so that
-    /// there is no Poisson's ratio: twist is as stiff as the mesh makes it
+    /// in other directions depends on the mesh. One angle at an edge says nothing of the bend along it, so
+    /// that there is no Poisson's ratio: twist is as stiff as the mesh makes it
     /// ([`PlateBending`](crate::PlateBending) has the torsion of a plate).
     ///
     /// # Errors
@@ -621,8 +622,8 @@ impl Remembering for CreaseSprings {
 }
 
 impl MaterialReport for CreaseSprings {
-    /// Half the elastic energy of a hinge goes to each of its faces: where a mesh has exactly the energy of a bend
-    /// ([`CreaseSprings::bending`]), so has each face inside.
+    /// Half the elastic energy of a hinge goes to each of its faces: where a mesh has exactly the energy of a
+    /// bend ([`CreaseSprings::bending`]), so has each face inside.
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
         for ((h, p), beside) in self.with_plastic(at.memory).zip(&self.bent) {
             let angle = Fold::at(at.x, &h.vertices).angle();

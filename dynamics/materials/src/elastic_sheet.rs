@@ -44,8 +44,8 @@ use swelling::Swelling;
 /// paper, metal, film or cloth: one that bends in every direction on any mesh, and never stretches beyond the
 /// limit.
 ///
-/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, with the
-/// strain of the chords of bends, with some slack where the sheet bends, and with a barrier at the limit,
+/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, with
+/// the strain of the chords of bends, with some slack where the sheet bends, and with a barrier at the limit,
 ///
 /// ```text
 /// V(x) = sum_T A_T { W_T(|E_T - S_T|_nu) + kappa b(|E_T| / m) },
@@ -53,10 +53,10 @@ use swelling::Swelling;
 /// W_T(e) = K e^2 / 2  where the sheet is flat,   K = E h / (1 - nu^2),
 /// ```
 ///
-/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, Young's modulus
-/// times thickness `E h` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear
-/// in the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge
-/// at rest, `e^T E_T e = c_e`.
+/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, Young's
+/// modulus times thickness `E h` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain
+/// is linear in the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e`
+/// of an edge at rest, `e^T E_T e = c_e`.
 ///
 /// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up
 /// to half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The
@@ -65,47 +65,49 @@ use swelling::Swelling;
 /// the barrier (joules per square metre) is set where a simulation starts, from the weight and the kinetic
 /// energy of the sheet, and raised after steps in which it moves faster.
 ///
-/// *Chords.* A stiff membrane locks on coarse meshes, as a face measures chords where the sheet has arcs. Of a
-/// sheet that bends as a plate does ([`ElasticSheet::beside`]) the second derivatives `H_T` of the positions are
-/// known, and `S_T` is the strain of the chords: that with
+/// *Chords.* A stiff membrane locks on coarse meshes, as a face measures chords where the sheet has arcs. Of
+/// a sheet that bends as a plate does ([`ElasticSheet::beside`]) the second derivatives `H_T` of the
+/// positions are known, and `S_T` is the strain of the chords: that with
 ///
 /// ```text
 /// e^T S_T e = -|H_T(e, e)|^2 / 24
 /// ```
 ///
-/// for the three edges, as a chord of an arc of length `l` and curvature `k` has the squared length `l^2 (1 - (k
-/// l)^2 / 12)` but for terms of fourth order in `k l`.
+/// for the three edges, as a chord of an arc of length `l` and curvature `k` has the squared length
+/// `l^2 (1 - (k l)^2 / 12)` but for terms of fourth order in `k l`.
 ///
-/// *Slack.* The curvature is not known better than the mesh resolves it, at clamps and at the tips of cones least
-/// of all, and it changes within a step. The law of a face that bends is therefore a spring in series with a
-/// slack,
+/// *Slack.* The curvature is not known better than the mesh resolves it, at clamps and at the tips of cones
+/// least of all, and it changes within a step. The law of a face that bends is therefore a spring in series
+/// with a slack,
 ///
 /// ```text
 /// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = max(20, 500 r) D / h^2,
 /// ```
 ///
-/// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the flexural
-/// rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of the mesh size;
-/// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
-/// force at which a wave of the size of a face is pulled flat, or buckles; faces that bend much yield by `h^2 / (500
-/// D)` for each newton per metre at most.
+/// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the
+/// flexural rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of
+/// the mesh size; where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its
+/// material. `s_0` is a force at which a wave of the size of a face is pulled flat, or buckles; faces that
+/// bend much yield by `h^2 / (500 D)` for each newton per metre at most.
 ///
-/// *Tension.* Under a tension `s_1` the slack `r` is `2 D k^2 / s_1` at most: a ripple of the curvature `k` costs `D k^2 /
-/// 2` for each square metre, and a tension gains up to `s_1 r` by the slack of the ripple. Without this bound a taut sheet
-/// would ripple by itself, and yield. `s_1` is the largest principal value of the mean stress of the faces around, or of
-/// `W_T(E_T)` without chords, if that is less: faces that are not as short as their chords yet are not pulled.
+/// *Tension.* Under a tension `s_1` the slack `r` is `2 D k^2 / s_1` at most: a ripple of the curvature `k`
+/// costs `D k^2 / 2` for each square metre, and a tension gains up to `s_1 r` by the slack of the ripple.
+/// Without this bound a taut sheet would ripple by itself, and yield. `s_1` is the largest principal value of
+/// the mean stress of the faces around, or of `W_T(E_T)` without chords, if that is less: faces that are not
+/// as short as their chords yet are not pulled.
 ///
-/// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores `(E_T - S_T) : C (E_T -
-/// S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction: its range is that of a norm
-/// `|z|_nu` with `nu = C12 / (C11 C22)^(1/2)`, and the strain `z` to which it is pulled out minimises the energy of
-/// spring and slack, `min_z (e - z) : C (e - z) / 2 + psi(|z|_nu)`.
+/// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores
+/// `(E_T - S_T) : C (E_T - S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction:
+/// its range is that of a norm `|z|_nu` with `nu = C12 / (C11 C22)^(1/2)`, and the strain `z` to which it is
+/// pulled out minimises the energy of spring and slack, `min_z (e - z) : C (e - z) / 2 + psi(|z|_nu)`.
 ///
-/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. Slack that
-/// grows lets energy of its face go; where it closes it takes up as much at most, and stays open by as much as that does
-/// not pay for. So slack never drives a motion; a face that was bent may keep some slack until it is unloaded. (The
-/// curvature of patches in the membrane strain, within the step, is that of F. G. Flores and E. Onate, "Improvements
-/// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach",
-/// Comput. Methods Appl. Mech. Eng. 194, 2005; it couples all vertices of a patch as stiffly as the membrane.)
+/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work.
+/// Slack that grows lets energy of its face go; where it closes it takes up as much at most, and stays open
+/// by as much as that does not pay for. So slack never drives a motion; a face that was bent may keep some
+/// slack until it is unloaded. (The curvature of patches in the membrane strain, within the step, is that of
+/// F. G. Flores and E. Onate, "Improvements in the membrane behaviour of the three node rotation-free BST
+/// shell triangle using an assumed strain approach", Comput. Methods Appl. Mech. Eng. 194, 2005; it couples
+/// all vertices of a patch as stiffly as the membrane.)
 ///
 /// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential
 /// contact", ACM Trans. Graph. 40(4), 2021, Sec. 5.
@@ -194,9 +196,10 @@ impl ElasticSheet {
         })
     }
 
-    /// Of a sheet that bends as `plate` does, a plate of the same `sheet`: chords are shorter than their arcs,
-    /// and faces have slack where they bend (see [above](Self)), so that a coarse mesh bends, too. Without, or
-    /// with a plate that has no rigidity, bends that a mesh cannot follow by folding stretch the sheet.
+    /// Of a sheet that bends as `plate` does, a plate of the same `sheet`: chords are shorter than their
+    /// arcs, and faces have slack where they bend (see [above](Self)), so that a coarse mesh bends, too.
+    /// Without, or with a plate that has no rigidity, bends that a mesh cannot follow by folding stretch the
+    /// sheet.
     ///
     /// # Panics
     /// If the plate is of a sheet with another number of faces.
@@ -229,11 +232,11 @@ impl ElasticSheet {
         Ok(self)
     }
 
-    /// With lengths that grow by themselves, by a part `s` that is a function of time: negative for paper that
-    /// dries, positive for film that is heated. Energies are those [above](Self) with `E_T - g I`, `1 + 2 g = (1 +
-    /// s)^2`, in place of `E_T`, by areas and stiffnesses of the sheet before it swells; the limit is one of the
-    /// strain against the grown lengths, `(E_T - g I) / (1 + s)^2`. What swelling does to bending stiffness, slack
-    /// and curvature without stress, a part of the order of `s`, is left out.
+    /// With lengths that grow by themselves, by a part `s` that is a function of time: negative for paper
+    /// that dries, positive for film that is heated. Energies are those [above](Self) with `E_T - g I`,
+    /// `1 + 2 g = (1 + s)^2`, in place of `E_T`, by areas and stiffnesses of the sheet before it swells; the
+    /// limit is one of the strain against the grown lengths, `(E_T - g I) / (1 + s)^2`. What swelling does to
+    /// bending stiffness, slack and curvature without stress, a part of the order of `s`, is left out.
     ///
     /// A strip that is held at both ends and shrinks by a part `s` pulls with `E h s` per width.
     ///
@@ -276,8 +279,8 @@ impl ElasticSheet {
         union
     }
 
-    /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those that
-    /// are elastic.
+    /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those
+    /// that are elastic.
     fn place(&mut self, part: &Part, first: usize) {
         let faces = std::mem::take(&mut self.faces).into_iter();
         self.faces = faces.map(|face| face.in_union(part)).collect();
@@ -349,7 +352,8 @@ impl ElasticSheet {
         })
     }
 
-    /// The face that is the largest for its bend at rest, by [`CurvedFace::coarseness`]; nothing where all are flat.
+    /// The face that is the largest for its bend at rest, by [`CurvedFace::coarseness`]; nothing where all
+    /// are flat.
     pub fn coarsest_curved(&self) -> Option<CurvedFace> {
         let curved = self.arcs.iter().flat_map(|arcs| arcs.curved(&self.faces));
         curved.max_by(|a, b| a.coarseness().total_cmp(&b.coarseness()))

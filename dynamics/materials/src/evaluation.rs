@@ -4,8 +4,8 @@ use crate::potential::At;
 use isosheet_linalg::parallel::{Work, fill};
 use std::sync::Mutex;
 
-/// Working memory that one caller at a time reuses; another one gets memory of its own, and so does a thread that
-/// takes up other work while it waits for the rest of its own.
+/// Working memory that one caller at a time reuses; another one gets memory of its own, and so does a thread
+/// that takes up other work while it waits for the rest of its own.
 #[derive(Debug, Default)]
 pub(super) struct Room<T>(Mutex<T>);
 
@@ -25,8 +25,9 @@ impl<T: Default> Clone for Room<T> {
     }
 }
 
-/// The parts of a potential, such as faces, where it was evaluated last: its energy, gradient and Hessian at one place
-/// have most of what they compute in common. What changes the potential itself has to begin with a new one.
+/// The parts of a potential, such as faces, where it was evaluated last: its energy, gradient and Hessian at
+/// one place have most of what they compute in common. What changes the potential itself has to begin with a
+/// new one.
 #[derive(Debug)]
 pub(super) struct Evaluation<T>(Room<Last<T>>);
 
@@ -101,7 +102,8 @@ impl<T: Send> Evaluation<T> {
 mod tests {
     use super::*;
 
-    /// What is kept belongs to time, positions and memory, and a caller within another one gets memory of its own.
+    /// What is kept belongs to time, positions and memory, and a caller within another one gets memory of its
+    /// own.
     #[test]
     fn parts_are_those_of_the_place() {
         let evaluation = Evaluation::default();

@@ -7,7 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 /// Receives the 3 x 3 blocks of a potential's Hessian.
 ///
 /// Blocks exist where the rods have them, at every vertex and along every edge, and for the pairs that
-/// [`Potential::couplings`](crate::Potential::couplings) names. Other couplings have to be left out, which costs iterations, not accuracy.
+/// [`Potential::couplings`](crate::Potential::couplings) names. Other couplings have to be left out, which
+/// costs iterations, not accuracy.
 pub trait HessianSink {
     /// Adds `d2V / dx_v dx_v`, symmetric.
     fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>);
@@ -15,13 +16,14 @@ pub trait HessianSink {
     /// Adds `d2V / dx_a dx_b` for the edge `a -> b`; the transposed block is implied.
     fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>);
 
-    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`](crate::Potential::couplings), rows at `a`; the transposed block
-    /// is implied.
+    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`](crate::Potential::couplings), rows
+    /// at `a`; the transposed block is implied.
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>);
 
-    /// Adds `factor g g^T` with a `factor` of at least zero and a vector `g` of some vertices, which may be all
-    /// of them: the part of the Hessian of an energy of one quantity that is made of the quantity's gradient.
-    /// Damped steps take it exactly, for one more solve. The default leaves it out, as conservative methods do.
+    /// Adds `factor g g^T` with a `factor` of at least zero and a vector `g` of some vertices, which may be
+    /// all of them: the part of the Hessian of an energy of one quantity that is made of the quantity's
+    /// gradient. Damped steps take it exactly, for one more solve. The default leaves it out, as conservative
+    /// methods do.
     fn add_square(&mut self, _factor: f64, _gradient: &[(VertexId, Vector3<f64>)]) {}
 }
 

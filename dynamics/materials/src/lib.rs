@@ -1,7 +1,7 @@
 //! Potential energies of sheets, and materials.
 //!
-//! A [`Potential`] is an energy of the positions of all vertices, `V(t, x)`, with a gradient, and a Hessian that it gives to
-//! a [`HessianSink`] block by block. This crate has the trait, and the energies of a sheet:
+//! A [`Potential`] is an energy of the positions of all vertices, `V(t, x)`, with a gradient, and a Hessian
+//! that it gives to a [`HessianSink`] block by block. This crate has the trait, and the energies of a sheet:
 //!
 //! | potential | of |
 //! |---|---|
@@ -11,8 +11,9 @@
 //! | [`Glue`] | vertices that are held together until they peel |
 //! | [`Gravity`] | weight |
 //!
-//! A [`Material`] says what a square metre of paper, cloth or metal weighs, and how it resists stretching and bending.
-//! What moves sheets by these energies is in `isosheet-dynamics`; anything else can be, which needs no more than this crate.
+//! A [`Material`] says what a square metre of paper, cloth or metal weighs, and how it resists stretching and
+//! bending. What moves sheets by these energies is in `isosheet-dynamics`; anything else can be, which needs
+//! no more than this crate.
 //!
 //! SI units; positions and forces are slices of length `3V`; fold angles are positive for valleys.
 

@@ -94,9 +94,10 @@ impl Isotropic {
 }
 
 impl Material {
-    /// The strain limit of materials unless they stretch more: 5 %. This is no yield point. Metals yield, and paper
-    /// tears, at 0.1 to 3 %; a sheet that is bent without folds has strains far below that. The faces of a mesh that is
-    /// too coarse for its bends have larger ones, as chords are shorter than arcs: by 4 % where a face bends by a radian.
+    /// The strain limit of materials unless they stretch more: 5 %. This is no yield point. Metals yield, and
+    /// paper tears, at 0.1 to 3 %; a sheet that is bent without folds has strains far below that. The faces
+    /// of a mesh that is too coarse for its bends have larger ones, as chords are shorter than arcs: by 4 %
+    /// where a face bends by a radian.
     pub const STRAIN_LIMIT: f64 = ElasticSheet::LIMIT;
 
     /// The sheet of an isotropic material of constant thickness: metals, films, rubber.

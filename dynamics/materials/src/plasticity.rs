@@ -29,18 +29,19 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Layers
 ///
-/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) the integral over each half of it is
-/// that of Gauss and Legendre: the layers are at the points `z_i`, in parts of the way from the middle to a face, with the
-/// thicknesses `w_i`, and their parts of the rigidity, the moment and the hardening are
+/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) the integral over each half
+/// of it is that of Gauss and Legendre: the layers are at the points `z_i`, in parts of the way from the
+/// middle to a face, with the thicknesses `w_i`, and their parts of the rigidity, the moment and the
+/// hardening are
 ///
 /// ```text
 /// D_i = 3 D w_i z_i^2,    M_i = 2 M_y w_i z_i,    H_i = H D_i / D,    i = 1 .. n,
 /// ```
 ///
-/// so that each yields at the curvature `k_y / z_i`. (One layer is the whole section.) All layers have the curvature `k` of the section, each has
-/// a plastic curvature `p_i` and yields by itself; `M = sum_i M_i(k)`, and `p` is the mean of the `p_i`
-/// weighted by the `D_i`. The moment grows from `2/3 M_y` on, about, to `M_y` (or beyond, by hardening), and
-/// is that of an elastic-perfectly plastic material,
+/// so that each yields at the curvature `k_y / z_i`. (One layer is the whole section.) All layers have the
+/// curvature `k` of the section, each has a plastic curvature `p_i` and yields by itself; `M = sum_i M_i(k)`,
+/// and `p` is the mean of the `p_i` weighted by the `D_i`. The moment grows from `2/3 M_y` on, about, to
+/// `M_y` (or beyond, by hardening), and is that of an elastic-perfectly plastic material,
 ///
 /// ```text
 /// M = M_y (1 - (k_y / k)^2 / 3),    k_y = 2 M_y / (3 D),    k > k_y,
@@ -61,11 +62,11 @@ use serde::{Deserialize, Serialize};
 /// |M|^2 = [ M_11^2 - 2 nu M_11 M_22 + M_22^2 + 2 (1 + nu) M_12^2 ] / (1 - nu^2),
 /// ```
 ///
-/// and curvatures by `|p|^2 = (1 - nu) (p_11^2 + 2 p_12^2 + p_22^2) + nu (p_11 + p_22)^2`. Where a sheet bends in
-/// one direction, as a developable surface does, the curvature is `k` and the moments are `D k` along and `nu D
-/// k` across: these norms are `D |k|` and `|k|` for every Poisson's ratio. A narrow strip, whose sides are free
-/// of moments, yields at `sqrt(1 - nu^2) M_y`. For `nu = 1/2` the norm is `2 / sqrt(3)` times that of von Mises;
-/// for other ratios the two differ by up to a fifth in other states than these.
+/// and curvatures by `|p|^2 = (1 - nu) (p_11^2 + 2 p_12^2 + p_22^2) + nu (p_11 + p_22)^2`. Where a sheet
+/// bends in one direction, as a developable surface does, the curvature is `k` and the moments are `D k`
+/// along and `nu D k` across: these norms are `D |k|` and `|k|` for every Poisson's ratio. A narrow strip,
+/// whose sides are free of moments, yields at `sqrt(1 - nu^2) M_y`. For `nu = 1/2` the norm is `2 / sqrt(3)`
+/// times that of von Mises; for other ratios the two differ by up to a fifth in other states than these.
 ///
 /// (J. C. Simo and T. J. R. Hughes, *Computational Inelasticity*, Springer 1998, sections 1.4 and 3.3.)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,8 +80,8 @@ pub struct Yield {
     /// The hardening `H`, what `M_y` is shifted by per plastic curvature: newton metres per radian for a
     /// spring, newton metres for a sheet. Zero for a section that yields without hardening.
     pub hardening: f64,
-    /// The number of layers of each half of the section, at the points of Gauss and Legendre. With one, all of it yields at
-    /// the same moment.
+    /// The number of layers of each half of the section, at the points of Gauss and Legendre. With one, all
+    /// of it yields at the same moment.
     #[serde(default = "one")]
     pub layers: usize,
 }
@@ -176,9 +177,10 @@ impl Layer {
 }
 
 impl Yield {
-    /// The number of layers of a sheet unless another is asked for: the smallest with which what is left of the bend of a
-    /// cantilever errs by less than 1 % wherever the largest moment was 0.75 to 0.99 of [`Yield::moment`]. (In layers of
-    /// equal thickness 16 err by up to 6 %, as all of them have too large a moment.)
+    /// The number of layers of a sheet unless another is asked for: the smallest with which what is left of
+    /// the bend of a cantilever errs by less than 1 % wherever the largest moment was 0.75 to 0.99 of
+    /// [`Yield::moment`]. (In layers of equal thickness 16 err by up to 6 %, as all of them have too large a
+    /// moment.)
     pub const LAYERS: usize = 11;
 
     /// The largest number of layers.
@@ -244,10 +246,10 @@ impl Yield {
     /// ```
     ///
     /// the minimum being the incremental energy of the section (M. Ortiz and L. Stainier, "The variational
-    /// formulation of viscoplastic constitutive updates", Comput. Methods Appl. Mech. Eng. 171, 1999). Of `e` it is
-    /// convex and has a continuous gradient `k (e - d)`, the moment, with the mean `d` of the `d_i`, and the Hessian
-    /// `k (1 - slope)`. It is `k/2 |e - d|^2` and [`Flow::energy`], of which `sum_i k_i/2 |p_i + d_i - p - d|^2` is that
-    /// of the stresses between layers.
+    /// formulation of viscoplastic constitutive updates", Comput. Methods Appl. Mech. Eng. 171, 1999). Of `e`
+    /// it is convex and has a continuous gradient `k (e - d)`, the moment, with the mean `d` of the `d_i`,
+    /// and the Hessian `k (1 - slope)`. It is `k/2 |e - d|^2` and [`Flow::energy`], of which
+    /// `sum_i k_i/2 |p_i + d_i - p - d|^2` is that of the stresses between layers.
     pub(super) fn flow<const N: usize>(
         &self,
         k: f64,

@@ -52,26 +52,28 @@ use stress_free::{Blocks, StressFreeCurvature};
 /// H_T x = 1/A_T sum_{e in T} l_e [ s_e n n^T + (x_b - x_a) / l_e  sym(t n^T) ],
 /// ```
 ///
-/// with the flexural rigidity `D` (newton metres), Poisson's ratio `nu` ([`PlateStiffness`]), the areas `A_T` of the faces, and for each edge `e = (a,
-/// b)` of a face its length `l_e`, its direction `t`, the outward normal `n` in the plane of the face and the
-/// derivative `s_e` of the positions along `n` at its midpoint. `H_T x` is the mean of the second derivatives
-/// of the positions by material coordinates over the face (Gauss's theorem), one vector for each of its three
-/// components. For an isometric deformation these second derivatives are the second fundamental form times
-/// the surface normal, and `V` is the energy of Kirchhoff's plate. A developable surface has one principal
-/// curvature, and its energy does not depend on Poisson's ratio; twist and bending in two directions do.
+/// with the flexural rigidity `D` (newton metres), Poisson's ratio `nu` ([`PlateStiffness`]), the areas `A_T`
+/// of the faces, and for each edge `e = (a, b)` of a face its length `l_e`, its direction `t`, the outward
+/// normal `n` in the plane of the face and the derivative `s_e` of the positions along `n` at its midpoint.
+/// `H_T x` is the mean of the second derivatives of the positions by material coordinates over the face
+/// (Gauss's theorem), one vector for each of its three components. For an isometric deformation these second
+/// derivatives are the second fundamental form times the surface normal, and `V` is the energy of Kirchhoff's
+/// plate. A developable surface has one principal curvature, and its energy does not depend on Poisson's
+/// ratio; twist and bending in two directions do.
 ///
 /// The two faces of an edge share `s_e`, which makes the energy that of Morley's plate element, with the
 /// slopes eliminated: inside, `s_e` is the slope of the quadratic polynomial that fits the vertices of the
 /// two faces and their neighbours by weighted least squares; at free edges it is that of the face and its
-/// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face. Near clamps the
-/// polynomials fit the slopes that the clamps hold, too, and have the cubic terms that a clamp leaves free.
-/// Second derivatives are exact for quadratic positions, and deflections are of second order in the size of
-/// the faces on any mesh.
+/// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face.
+/// Near clamps the polynomials fit the slopes that the clamps hold, too, and have the cubic terms that a
+/// clamp leaves free. Second derivatives are exact for quadratic positions, and deflections are of second
+/// order in the size of the faces on any mesh.
 ///
-/// Means over faces, of slopes that are fitted, miss part of the energy of bends that vary. The energy is therefore taken
-/// at three points of a face, one for each edge, which differ by the second derivatives `Q_p` of the polynomials
-/// there; the factor is what a wave on a strip needs. (Where a mesh has too few vertices for a fit, and at creases, a face is not bent
-/// across its edge: a strip of one cell across does not curve across, and bends as a wide one does.) (The stiffness of
+/// Means over faces, of slopes that are fitted, miss part of the energy of bends that vary. The energy is
+/// therefore taken at three points of a face, one for each edge, which differ by the second derivatives `Q_p`
+/// of the polynomials there; the factor is what a wave on a strip needs. (Where a mesh has too few vertices
+/// for a fit, and at creases, a face is not bent across its edge: a strip of one cell across does not curve
+/// across, and bends as a wide one does.) (The stiffness of
 /// [`CreaseSprings::bending`](crate::CreaseSprings::bending) depends on how mesh and bend run.)
 ///
 /// Of the sheet that the plate is made of, the edge lengths alone count: where its rest positions are folded,
@@ -174,7 +176,8 @@ impl PlateBending {
         Self::patched(sheet, &Patched::everywhere(law.into()), edges)
     }
 
-    /// As [`PlateBending::held`], with patches that have other laws. A plate with patches has rigidity everywhere.
+    /// As [`PlateBending::held`], with patches that have other laws. A plate with patches has rigidity
+    /// everywhere.
     ///
     /// # Errors
     /// [`PlateBendingError`].
@@ -273,8 +276,9 @@ impl PlateBending {
         Ok(self)
     }
 
-    /// The plate of `sheet` with the natural curvature that it has in another shape, with positions `shape` (`3V`,
-    /// metres) of its vertices, times a profile of time; in place of the one that it had. Lengths stay those of the sheet.
+    /// The plate of `sheet` with the natural curvature that it has in another shape, with positions `shape`
+    /// (`3V`, metres) of its vertices, times a profile of time; in place of the one that it had. Lengths stay
+    /// those of the sheet.
     ///
     /// # Errors
     /// [`PlateBendingError::Curl`].
@@ -352,8 +356,8 @@ impl PlateBending {
         self.with_yields(sheet, &Patched::everywhere(yields))
     }
 
-    /// As [`PlateBending::with_yield`], with patches that yield otherwise, in as many layers as the sheet outside of
-    /// them.
+    /// As [`PlateBending::with_yield`], with patches that yield otherwise, in as many layers as the sheet
+    /// outside of them.
     ///
     /// # Errors
     /// [`PlateBendingError::Yield`] and [`PlateBendingError::Patch`].

@@ -109,7 +109,8 @@ pub trait Potential: Debug + Send + Sync {
         None
     }
 
-    /// What the energy depends on besides time and positions, of a potential that remembers. The default does not.
+    /// What the energy depends on besides time and positions, of a potential that remembers. The default does
+    /// not.
     fn remembering(&self) -> Option<&dyn Remembering> {
         None
     }
@@ -120,11 +121,11 @@ pub trait Potential: Debug + Send + Sync {
     }
 }
 
-/// A potential whose energy is infinite beyond a limit, such as that of the strain of an elastic sheet: the methods keep
-/// every iterate within it. For BDF2 and implicit Euler.
+/// A potential whose energy is infinite beyond a limit, such as that of the strain of an elastic sheet: the
+/// methods keep every iterate within it. For BDF2 and implicit Euler.
 pub trait Limited {
-    /// Whether what is prescribed leaves a place within the limit at a time and positions, such as lengths that grow by
-    /// themselves. The default says so.
+    /// Whether what is prescribed leaves a place within the limit at a time and positions, such as lengths
+    /// that grow by themselves. The default says so.
     ///
     /// # Errors
     /// [`LimitError`], such as [`LimitError::Refused`].
@@ -136,8 +137,8 @@ pub trait Limited {
     /// limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64;
 
-    /// Whether the energy at positions `end` is within the limit, of a displacement from where it is, whatever
-    /// the way.
+    /// Whether the energy at positions `end` is within the limit, of a displacement from where it is,
+    /// whatever the way.
     fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool;
 
     /// Adds `scale` times what is of second order in the displacement `dx` (`3V`, metres) and can be taken
@@ -148,8 +149,8 @@ pub trait Limited {
     }
 }
 
-/// A potential whose energy depends on more than time and positions: on plastic deformations, or on the way of what it
-/// holds. A simulation keeps the memory, and hands it over as [`At::memory`].
+/// A potential whose energy depends on more than time and positions: on plastic deformations, or on the way
+/// of what it holds. A simulation keeps the memory, and hands it over as [`At::memory`].
 pub trait Remembering {
     /// The memory before anything has happened. Its length never changes.
     fn memory(&self) -> Vec<f64>;
@@ -170,40 +171,41 @@ pub trait Remembering {
         false
     }
 
-    /// The vertex that the potential holds, of one that may come and go in the course of a run: then its memory is handed
-    /// on by this vertex, and else by the order of the potentials. The default holds none.
+    /// The vertex that the potential holds, of one that may come and go in the course of a run: then its
+    /// memory is handed on by this vertex, and else by the order of the potentials. The default holds none.
     fn held_vertex(&self) -> Option<VertexId> {
         None
     }
 }
 
-/// What a potential that bends or creases tells of its material, for reports alone. The defaults tell nothing.
+/// What a potential that bends or creases tells of its material, for reports alone. The defaults tell
+/// nothing.
 pub trait MaterialReport {
     /// Adds the energy of bending of each face (joules) to `faces`, for reports that compare it with that of
     /// stretching (`ElasticDeformation`).
     fn add_bending_energies(&self, _at: At<'_>, _faces: &mut [f64]) {}
 
-    /// The edges that are creases in a sheet that bends, with the bend of the faces beside each, which its fold
-    /// angle includes, radians, positive for valleys.
+    /// The edges that are creases in a sheet that bends, with the bend of the faces beside each, which its
+    /// fold angle includes, radians, positive for valleys.
     fn bends_at_creases(&self, _at: At<'_>) -> Vec<(EdgeId, f64)> {
         Vec::new()
     }
 
-    /// The edges at which it can yield, with the plastic angles that stay there by a memory, radians, positive
-    /// for valleys.
+    /// The edges at which it can yield, with the plastic angles that stay there by a memory, radians,
+    /// positive for valleys.
     fn plastic_angles(&self, _memory: &[f64]) -> Vec<(EdgeId, f64)> {
         Vec::new()
     }
 
-    /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the first
-    /// axis along the first edge of the face, positive where the sheet is a valley as seen from the side from
-    /// which faces are counter-clockwise.
+    /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the
+    /// first axis along the first edge of the face, positive where the sheet is a valley as seen from the
+    /// side from which faces are counter-clockwise.
     fn plastic_curvatures(&self, _memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         Vec::new()
     }
 
-    /// The moments (newton metres, in space) by which clamps that it knows hold slopes of the sheet, one for each
-    /// of its clamps.
+    /// The moments (newton metres, in space) by which clamps that it knows hold slopes of the sheet, one for
+    /// each of its clamps.
     fn clamp_moments(&self, _at: At<'_>) -> Vec<[f64; 3]> {
         Vec::new()
     }
@@ -263,8 +265,8 @@ impl Memories {
         self.held.clone_from(&other.held);
     }
 
-    /// Takes over the memories of another model of the same sheet: of potentials that come and go by the vertices that
-    /// they hold, and of others by their order.
+    /// Takes over the memories of another model of the same sheet: of potentials that come and go by the
+    /// vertices that they hold, and of others by their order.
     ///
     /// # Errors
     /// [`OtherMemories`] where there are not as many as this model remembers.
@@ -427,12 +429,11 @@ impl Potential for Gravity {
 /// The force is given on the vertices; its generalised components follow by virtual work,
 /// `Q_k = f . dx/dq_k`. The work it does enters the energy balance.
 ///
-/// BDF2 and implicit Euler ask for it once in a step: at the time of its end, which is exact for forces of time alone,
-/// and at positions and velocities extrapolated to it, at the order of the method. A force of velocities that takes more
-/// than about `4/3` of the momentum in a step is too stiff for that: the step is refused
-/// (`StepError::StiffForce`) and divided. As an `ImplicitForce` it may be as stiff as
-/// it likes. Energy-momentum asks for it
-/// at the middle of a step, RATTLE at both ends, charts at their stages.
+/// BDF2 and implicit Euler ask for it once in a step: at the time of its end, which is exact for forces of
+/// time alone, and at positions and velocities extrapolated to it, at the order of the method. A force of
+/// velocities that takes more than about `4/3` of the momentum in a step is too stiff for that: the step is
+/// refused (`StepError::StiffForce`) and divided. As an `ImplicitForce` it may be as stiff as it likes.
+/// Energy-momentum asks for it at the middle of a step, RATTLE at both ends, charts at their stages.
 pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);

@@ -8,9 +8,9 @@ use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use isosheet_motion::{Profile, ProfileError};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-/// A potential times a function of time, `f(t) V(x)`: a sheet that hardens as its glue dries, or softens as it is
-/// heated. The work of the change, `f' V`, enters the energy balance; where it yields, the moments at which it does
-/// are multiplied too.
+/// A potential times a function of time, `f(t) V(x)`: a sheet that hardens as its glue dries, or softens as
+/// it is heated. The work of the change, `f' V`, enters the energy balance; where it yields, the moments at
+/// which it does are multiplied too.
 ///
 /// ```
 /// use isosheet_materials::{At, PlateBending, Potential, Stiffening};
@@ -21,7 +21,8 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 /// let sheet = generate::isotropic_square(2, 0.2)?;
 /// let dries = Profile::Ramp { from: 0.1, to: 1.0, begin: 0.0, end: 60.0 };
 /// let plate = Stiffening::new(PlateBending::new(&sheet, 5e-4)?, dries)?;
-/// let bent: Vec<f64> = sheet.positions().as_chunks::<3>().0.iter().flat_map(|p| [p[0], p[1], p[0] * p[0]]).collect();
+/// let points = sheet.positions().as_chunks::<3>().0.iter();
+/// let bent: Vec<f64> = points.flat_map(|p| [p[0], p[1], p[0] * p[0]]).collect();
 /// let [wet, dry] = [0.0, 60.0].map(|t| plate.energy(At::new(t, &bent)));
 /// assert!((dry / wet - 10.0).abs() < 1e-12);
 /// # Ok(())

@@ -1,20 +1,20 @@
 //! A sheet as a mechanical system: what a scene is made of, before anything moves.
 //!
-//! A [`SheetModel`] has rods or an elastic sheet, masses, potentials, forces, damping, supports and rigid bodies. What acts
-//! in a step besides potentials is a [`term::Term`] of the objective that a step minimises, and what may go wrong in a
-//! step is a [`StepError`]. `isosheet-dynamics` solves for the motion of a model.
+//! A [`SheetModel`] has rods or an elastic sheet, masses, potentials, forces, damping, supports and rigid
+//! bodies. What acts in a step besides potentials is a [`term::Term`] of the objective that a step minimises,
+//! and what may go wrong in a step is a [`StepError`]. `isosheet-dynamics` solves for the motion of a model.
 //!
 //! | add | by |
 //! |---|---|
 //! | elasticity, or another potential | [`SheetModel::with_elastic_sheet`], [`SheetModel::with_potential`] |
-//! | weight, loads, pressure, gas, air | [`SheetModel::with_gravity`], [`SheetModel::with_force`], [`LoadedFaces`], [`Air`] |
-//! | supports | [`SheetModel::with_pins`], [`SheetModel::with_moving_pin`], [`SheetModel::with_constraint`], [`Hand`] |
+//! | weight, loads, pressure, gas, air | [`SheetModel::with_gravity`], `with_force`, [`LoadedFaces`], [`Air`] |
+//! | supports | [`SheetModel::with_pins`], `with_moving_pin`, `with_constraint`, [`Hand`] |
 //! | damping | [`SheetModel::with_damping`] |
 //! | bodies that respond | [`RigidBody`], [`Attachment`], [`JointSpring`] |
 //! | a force of velocities that is stiff, or a barrier | [`SheetModel::with_implicit_force`] |
 //!
-//! SI units; positions, velocities and forces are slices of length `3V`; gravity acts along -z. Length constraints are
-//! `c_e = (|x_a - x_b|^2 - l_e^2) / 2`.
+//! SI units; positions, velocities and forces are slices of length `3V`; gravity acts along -z. Length
+//! constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2`.
 
 pub mod constraint;
 mod report;

@@ -21,16 +21,17 @@ pub type CarriedPoint = [(VertexId, f64); 4];
 
 /// A rigid body as the four corners of a tetrahedron with rigid edges, which moves as the body does.
 ///
-/// A point p of the body is the combination `sum_k b_k(p) a_k` of the corners with constant weights that add up
-/// to one, so that the kinetic energy of the body is that of the constant mass matrix
-/// `M_kl = integral rho b_k b_l`, whatever tetrahedron carries it. The corners are placed in a frame in which the
-/// body is round: with the mass `m`, the centre `c` and the second moments
-/// `S = integral rho (r - c)(r - c)^T`, a point p is at `u = (S / m)^(-1/2) (p - c)`. A body that is much thinner
-/// in one direction than in another is taken for a thicker one there, so that its tetrahedron is not flat.
+/// A point p of the body is the combination `sum_k b_k(p) a_k` of the corners with constant weights that add
+/// up to one, so that the kinetic energy of the body is that of the constant mass matrix
+/// `M_kl = integral rho b_k b_l`, whatever tetrahedron carries it. The corners are placed in a frame in which
+/// the body is round: with the mass `m`, the centre `c` and the second moments
+/// `S = integral rho (r - c)(r - c)^T`, a point p is at `u = (S / m)^(-1/2) (p - c)`. A body that is much
+/// thinner in one direction than in another is taken for a thicker one there, so that its tetrahedron is not
+/// flat.
 ///
 /// * Without more the corners are those of a regular tetrahedron with `|u|^2 = 3`. Then the matrix is that of
-///   four equal masses (equimomental systems: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics of
-///   a System of Rigid Bodies*, 1882, Ch. I), unless the body is thin.
+///   four equal masses (equimomental systems: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics
+///   of a System of Rigid Bodies*, 1882, Ch. I), unless the body is thin.
 /// * [`RigidBody::with_corner`] puts the first corner at a point, where a ball joint can hold it.
 /// * [`RigidBody::with_edge`] puts the first two on a line, where a hinge or a slider can hold them.
 ///
@@ -129,8 +130,8 @@ impl RigidBody {
     /// (kg m2, symmetric).
     ///
     /// # Errors
-    /// [`RigidBodyError`]; also where a second moment is so much smaller than another one that the tetrahedron
-    /// is flat but for round-off.
+    /// [`RigidBodyError`]; also where a second moment is so much smaller than another one that the
+    /// tetrahedron is flat but for round-off.
     pub fn new(
         mass: f64,
         centre: [f64; 3],

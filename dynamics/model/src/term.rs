@@ -6,9 +6,10 @@
 //! Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x)
 //! ```
 //!
-//! over the positions `x` at its end, with the effective step `h` and the positions `x^` where inertia alone leads. A
-//! potential is a term without further ado. Whatever depends on velocities, lags behind, or forbids positions is a
-//! [`Term`] of its own, which an [`ImplicitForce`] of the model makes: the drag of the air, a wake, a barrier.
+//! over the positions `x` at its end, with the effective step `h` and the positions `x^` where inertia alone
+//! leads. A potential is a term without further ado. Whatever depends on velocities, lags behind, or forbids
+//! positions is a [`Term`] of its own, which an [`ImplicitForce`] of the model makes: the drag of the air, a
+//! wake, a barrier.
 
 use crate::State;
 use crate::report::step_error::StepError;
@@ -21,13 +22,14 @@ use std::sync::Arc;
 
 /// A summand of what a step of BDF2 or implicit Euler minimises.
 ///
-/// A term has an energy with gradient and Hessian. Where it needs them, it also has the largest part of a displacement
-/// that it allows, a correction of second order, quantities that lag behind the iterates, and the energy that it
-/// exchanged in the step. It keeps nothing that a later step depends on: [`Term::begin`] forgets the step before. What
-/// has to be remembered from step to step is the [memory](isosheet_materials::potential::Remembering) of a potential.
+/// A term has an energy with gradient and Hessian. Where it needs them, it also has the largest part of a
+/// displacement that it allows, a correction of second order, quantities that lag behind the iterates, and
+/// the energy that it exchanged in the step. It keeps nothing that a later step depends on: [`Term::begin`]
+/// forgets the step before. What has to be remembered from step to step is the
+/// [memory](isosheet_materials::potential::Remembering) of a potential.
 ///
-/// A velocity force `-c v` of each vertex, for example, has the energy `h |x - y|^2 c / (2 h^2)` with the positions `y`
-/// of [`StepStart::rest`], as `v = (x - y) / h`:
+/// A velocity force `-c v` of each vertex, for example, has the energy `h |x - y|^2 c / (2 h^2)` with the
+/// positions `y` of [`StepStart::rest`], as `v = (x - y) / h`:
 ///
 /// ```
 /// use isosheet_model::term::{
@@ -95,9 +97,9 @@ use std::sync::Arc;
 /// }
 /// ```
 pub trait Term: Any + Send {
-    /// Refuses a span of time, from its first second to its last, that cannot be stepped over from positions `x` (`3V`,
-    /// metres). A step asks before it begins, and again with the positions at its end and the time at its start. The
-    /// default takes all.
+    /// Refuses a span of time, from its first second to its last, that cannot be stepped over from positions
+    /// `x` (`3V`, metres). A step asks before it begins, and again with the positions at its end and the time
+    /// at its start. The default takes all.
     ///
     /// # Errors
     /// [`StepError`], such as [`StepError::Refused`].
@@ -105,8 +107,8 @@ pub trait Term: Any + Send {
         Ok(())
     }
 
-    /// Whether what it prescribes rests from the first second to the last: then a sheet that finds no step locks, and has
-    /// not been moved where it cannot go. The default prescribes nothing.
+    /// Whether what it prescribes rests from the first second to the last: then a sheet that finds no step
+    /// locks, and has not been moved where it cannot go. The default prescribes nothing.
     fn rests(&mut self, _span: [f64; 2]) -> bool {
         true
     }
@@ -126,8 +128,9 @@ pub trait Term: Any + Send {
     /// Adds the Hessian (newtons per metre), or a part of it.
     fn add_hessian(&mut self, at: Iterate<'_>, part: HessianPart, sink: &mut dyn BlockSink);
 
-    /// Appends the pairs of vertices, lower number first, that the Hessian couples at the iterate besides edges
-    /// and the pairs that potentials name; may append pairs twice and pairs that are edges. The default has none.
+    /// Appends the pairs of vertices, lower number first, that the Hessian couples at the iterate besides
+    /// edges and the pairs that potentials name; may append pairs twice and pairs that are edges. The default
+    /// has none.
     fn append_couplings(&mut self, _at: Iterate<'_>, _out: &mut Vec<[u32; 2]>) {}
 
     /// What cuts displacements, if anything does. The default has no barrier; a term that has one gives
@@ -149,8 +152,8 @@ pub trait Term: Any + Send {
         true
     }
 
-    /// Adds `scale` times the forces by which a displacement `dx`, the motion that was checked last, has to be
-    /// corrected to second order; whether there are any.
+    /// Adds `scale` times the forces by which a displacement `dx`, the motion that was checked last, has to
+    /// be corrected to second order; whether there are any.
     fn add_correction(
         &mut self,
         _at: Iterate<'_>,
@@ -205,14 +208,15 @@ pub trait Term: Any + Send {
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError>;
 }
 
-/// A force that BDF2 and implicit Euler take as a term of their objective, and all other methods as a [`Force`]. See
+/// A force that BDF2 and implicit Euler take as a term of their objective, and all other methods as a
+/// [`Force`]. See
 /// [`SheetModel::with_implicit_force`](crate::SheetModel::with_implicit_force).
 pub trait ImplicitForce: Force {
     /// The term, in a model with these vertices (`V`) free; the others are pinned.
     fn term(&self, free: Arc<[bool]>) -> Box<dyn Term>;
 
-    /// Whether the force is that of its term alone, so that methods which do not minimise cannot have it. The default says
-    /// no.
+    /// Whether the force is that of its term alone, so that methods which do not minimise cannot have it. The
+    /// default says no.
     fn needs_minimising(&self) -> bool {
         false
     }
@@ -245,8 +249,8 @@ pub struct StepStart<'a> {
 }
 
 impl StepStart<'_> {
-    /// Adds the velocities that the step is expected to end with (`3V`, metres per second): those at its start, and
-    /// of a two-step formula the extrapolation of the last two, whose error is of second order.
+    /// Adds the velocities that the step is expected to end with (`3V`, metres per second): those at its
+    /// start, and of a two-step formula the extrapolation of the last two, whose error is of second order.
     pub fn add_velocity_ahead(&self, out: &mut [f64]) {
         let now = self.state;
         let ratio = self.before.map_or(0.0, |b| self.span / (now.t - b.t));
@@ -261,10 +265,10 @@ impl StepStart<'_> {
         self.state.t + self.span
     }
 
-    /// Work of an implicit force at the free vertices in a step that ends at positions `x` with the force `end`
-    /// (`3V`, newtons): of implicit Euler with the force at the end, which balances the energy but for what the
-    /// method dissipates; of a two-step formula by the trapezoidal rule with the force at the start, at the order
-    /// of the formula.
+    /// Work of an implicit force at the free vertices in a step that ends at positions `x` with the force
+    /// `end` (`3V`, newtons): of implicit Euler with the force at the end, which balances the energy but for
+    /// what the method dissipates; of a two-step formula by the trapezoidal rule with the force at the start,
+    /// at the order of the formula.
     pub fn implicit_work(
         &self,
         force: &impl Force,
@@ -377,8 +381,8 @@ pub struct Exchange {
     pub stored: f64,
     /// Energy that the tolerance of the lengths leaves open.
     pub length_slack: f64,
-    /// Work by which forces that were expected of the end of the step differ from those that are there, where they are
-    /// too stiff to be expected; not negative.
+    /// Work by which forces that were expected of the end of the step differ from those that are there, where
+    /// they are too stiff to be expected; not negative.
     pub misjudged: f64,
 }
 

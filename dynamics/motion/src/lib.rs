@@ -1,7 +1,8 @@
 //! Functions of time, and the prescribed motions of points and of rigid bodies that are made of them.
 //!
-//! A [`Profile`] is a scalar function of time with exact derivatives. A [`PointMotion`] is three of them or any function,
-//! a [`RigidMotion`] is made of profiles, of poses at given times, or of any function. SI units, angles in radians.
+//! A [`Profile`] is a scalar function of time with exact derivatives. A [`PointMotion`] is three of them or
+//! any function, a [`RigidMotion`] is made of profiles, of poses at given times, or of any function. SI
+//! units, angles in radians.
 
 mod led;
 mod profile;

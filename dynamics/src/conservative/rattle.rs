@@ -272,8 +272,8 @@ impl Rattle {
             .apply(&self.newton.x1, &self.difference, &mut self.newton.rods);
     }
 
-    /// Mean forces of the supports over the step, up to the velocity `u`; the velocities at the end, as they are
-    /// foretold, are in `difference`.
+    /// Mean forces of the supports over the step, up to the velocity `u`; the velocities at the end, as they
+    /// are foretold, are in `difference`.
     fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
         let (u, v) = (&self.newton.u, &state.v);
         if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
@@ -330,7 +330,8 @@ impl Rattle {
             &self.newton.x1,
             &mut self.force,
         );
-        // Forces of velocities ask for that at the end, which the first half of the step foretells to second order.
+        // Forces of velocities ask for that at the end, which the first half of the step foretells to second
+        // order.
         for (d, (u, v)) in self
             .difference
             .iter_mut()

@@ -1,5 +1,5 @@
-//! What the solver makes of an implementation of [`Contact`](super::Contact), for tests, benchmarks and reports
-//! of the workspace. It is no part of the public interface and may change in any version.
+//! What the solver makes of an implementation of [`Contact`](super::Contact), for tests, benchmarks and
+//! reports of the workspace. It is no part of the public interface and may change in any version.
 
 pub use super::barrier::BarrierPotential;
 pub use super::lagged::{FrictionContact, LaggedFriction};

@@ -363,8 +363,8 @@ impl Restoration {
         }
     }
 
-    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions `x`.
-    /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions
+    /// `x`. The rods have the directions of the positions `rods_at`, those of `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,

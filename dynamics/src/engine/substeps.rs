@@ -397,8 +397,8 @@ enum Stop {
 }
 
 impl Substeps<'_, '_> {
-    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
-    /// as the integrator said.
+    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each
+    /// other, or as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
         if matches!(
             cause,
@@ -435,8 +435,8 @@ impl Substeps<'_, '_> {
         }))
     }
 
-    /// The error of an elastic sheet that is stretched so near to its limit that the numbers of its barrier are too large for
-    /// the arithmetic, if the linear algebra failed.
+    /// The error of an elastic sheet that is stretched so near to its limit that the numbers of its barrier
+    /// are too large for the arithmetic, if the linear algebra failed.
     fn at_limit(&self, cause: &StepError) -> Option<StepError> {
         let reason = Reason::LinearAlgebra;
         if !matches!(cause, StepError::NotConverged { reason: found, .. } if *found == reason) {
@@ -454,8 +454,8 @@ impl Substeps<'_, '_> {
         })
     }
 
-    /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no search can
-    /// succeed with it.
+    /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no
+    /// search can succeed with it.
     fn wrong_potential(&self) -> Option<StepError> {
         let Motion {
             state, memories, ..
@@ -651,8 +651,9 @@ impl Substeps<'_, '_> {
         }
     }
 
-    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
-    /// go: what is accepted does not depend on the effort.
+    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made
+    /// again without a limit, unless the sheet locks, or has nowhere to go: what is accepted does not depend
+    /// on the effort.
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
         let proposed = self.attempt(h);
         if !self.totals.effort.is_spent() {

@@ -70,10 +70,10 @@ impl VertexRows {
         self.held.fill(false);
     }
 
-    /// Raises the penalties of active constraints to `kappa` times the stiffness of what a linear system has at the
-    /// vertex, the largest diagonal entry of its block (kilograms): equations that are solved for are kept to `1 /
-    /// kappa` by it alone. One-sided constraints are active by the penalties that they have, which do not mistake
-    /// round-off for a gap, and are equalities of the system then.
+    /// Raises the penalties of active constraints to `kappa` times the stiffness of what a linear system has
+    /// at the vertex, the largest diagonal entry of its block (kilograms): equations that are solved for are
+    /// kept to `1 / kappa` by it alone. One-sided constraints are active by the penalties that they have,
+    /// which do not mistake round-off for a gap, and are equalities of the system then.
     pub(crate) fn stiffen(&mut self, kappa: f64, stiffness: impl Fn(VertexId) -> f64) {
         for i in 0..self.vertices.len() {
             if self.penalties[i] > 0.0 && self.is_active(i) {
@@ -84,9 +84,10 @@ impl VertexRows {
         }
     }
 
-    /// Replaces the multipliers of one-sided constraints that are equalities of the linear system by their first-order
-    /// estimates after the step `-dx`, the equations being linearised: the negative part of `L + p (c - J dx)`. Others
-    /// have none. Returns the largest change and the largest of them, kilogram metres.
+    /// Replaces the multipliers of one-sided constraints that are equalities of the linear system by their
+    /// first-order estimates after the step `-dx`, the equations being linearised: the negative part of
+    /// `L + p (c - J dx)`. Others have none. Returns the largest change and the largest of them, kilogram
+    /// metres.
     pub(crate) fn update_one_sided(&mut self, dx: &[f64]) -> [f64; 2] {
         let mut largest = [0.0_f64; 2];
         for i in 0..self.multipliers.len() {
@@ -201,8 +202,8 @@ impl VertexRows {
         }
     }
 
-    /// Adds the Hessian of [`VertexRows::value`], or a positive semidefinite part of it, with the curvature of the
-    /// equations under their multipliers, or under the estimates of these.
+    /// Adds the Hessian of [`VertexRows::value`], or a positive semidefinite part of it, with the curvature
+    /// of the equations under their multipliers, or under the estimates of these.
     pub(crate) fn add_hessian(
         &self,
         part: HessianPart,

@@ -45,8 +45,8 @@ const GRADIENT_ACCURACY: f64 = 0.1;
 /// Potentials may couple vertices without a common edge. Bending couples some thirty to each vertex, and a
 /// factorisation with these couplings takes ten times as long as one without. So the matrix without them,
 /// with their substitutes ([`FarCouplings`]), is factorised where that is the cheaper way, and conjugate
-/// gradients on the whole matrix do the rest. Terms of rank one that couple all vertices are no part of what is
-/// factorised, and enter solutions exactly ([`LowRank`]).
+/// gradients on the whole matrix do the rest. Terms of rank one that couple all vertices are no part of what
+/// is factorised, and enter solutions exactly ([`LowRank`]).
 pub(crate) struct PrimalMatrix {
     /// All but the far couplings.
     near: SparseLlt,
@@ -351,8 +351,8 @@ impl PrimalMatrix {
     /// Factorises the matrix that was assembled last, or without its far couplings.
     ///
     /// # Errors
-    /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive definite.
-    /// (Without far couplings some matrices that are not positive definite are factorised;
+    /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive
+    /// definite. (Without far couplings some matrices that are not positive definite are factorised;
     /// [`PrimalMatrix::solve_whole`] finds those that matter.)
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         if self.far.are_zero() {
@@ -390,7 +390,8 @@ impl PrimalMatrix {
         expected <= self.iterations_worth() as f64
     }
 
-    /// Whether a block had no place: one of a pair that nothing has named, or of a vertex or an edge that there is not.
+    /// Whether a block had no place: one of a pair that nothing has named, or of a vertex or an edge that
+    /// there is not.
     pub(crate) fn has_misplaced(&self) -> bool {
         self.has_misplaced
     }

@@ -55,7 +55,8 @@ impl Shares {
 fn local(model: &SheetModel, (t, x): (f64, &[f64]), left: &[f64], active: &[bool]) -> Shares {
     let mut sum = Shares::none(model);
     let constraints = model.constraints();
-    // Constraints of one vertex take what those before them have left; of normals at right angles that is all.
+    // Constraints of one vertex take what those before them have left; of normals at right angles that is
+    // all.
     let mut rest = left.to_vec();
     for (i, c) in constraints.iter().enumerate() {
         let v = c.vertex();

@@ -9,13 +9,13 @@ use isosheet_model::PINNED;
 use isosheet_model::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use std::sync::Arc;
 
-/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`; `x^` is
-/// the prediction.
+/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`;
+/// `x^` is the prediction.
 ///
-/// The explicit forces are those at the time of the end, which is exact where they depend on time alone, and at the
-/// positions and velocities that the step is expected to end with ([`StepStart::ahead`],
-/// [`StepStart::add_velocity_ahead`]): a two-step formula keeps its order (U. M. Ascher, S. J. Ruuth and B. T. R.
-/// Wetton, SIAM J. Numer. Anal. 32, 1995).
+/// The explicit forces are those at the time of the end, which is exact where they depend on time alone, and
+/// at the positions and velocities that the step is expected to end with ([`StepStart::ahead`],
+/// [`StepStart::add_velocity_ahead`]): a two-step formula keeps its order (U. M. Ascher, S. J. Ruuth and B.
+/// T. R. Wetton, SIAM J. Numer. Anal. 32, 1995).
 pub(super) struct Acting {
     model: Arc<SheetModel>,
     has_limit: bool,
@@ -113,9 +113,10 @@ impl Acting {
         Ok(())
     }
 
-    /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from that of the
-    /// forces there, if they are too stiff to be expected: if with the motion `z` at the end and the expected one `y`
-    /// `|h^2 M^-1 (f(z) - f(y))| > |z - y|` in the norm of the masses, so that the iteration `y <- z(y)` diverges.
+    /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from
+    /// that of the forces there, if they are too stiff to be expected: if with the motion `z` at the end and
+    /// the expected one `y` `|h^2 M^-1 (f(z) - f(y))| > |z - y|` in the norm of the masses, so that the
+    /// iteration `y <- z(y)` diverges.
     fn misjudged(&mut self, step: &StepStart<'_>, x: &[f64]) -> f64 {
         let h = step.h;
         let v = x.iter().zip(step.rest).map(|(x, y)| (x - y) / h);
@@ -250,8 +251,8 @@ impl Term for Acting {
         any
     }
 
-    /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step formula
-    /// that of their mean at both ends, which may err by the difference of the two.
+    /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step
+    /// formula that of their mean at both ends, which may err by the difference of the two.
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let start = step.state;
         if self.model.forces().is_empty() {

@@ -97,8 +97,8 @@ impl Inertia {
     /// sum_k max(0, |d|_M^2 / 2 - |d - c_k|_M^2 / 2),     d = x - x^,
     /// ```
     ///
-    /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight `F_k`
-    /// of the part alone takes it.
+    /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight
+    /// `F_k` of the part alone takes it.
     pub(super) fn of_fall(&mut self) -> f64 {
         let Falling {
             masses,

@@ -26,8 +26,8 @@ pub(crate) use isosheet_materials::hessian::HessianPart;
 /// Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x),
 /// ```
 ///
-/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the model,
-/// and contact where a scene names it.
+/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the
+/// model, and contact where a scene names it.
 pub(crate) struct Objective {
     inertia: Inertia,
     /// Potentials and explicit forces.
@@ -133,8 +133,8 @@ impl Objective {
         self.terms().try_for_each(|term| term.check(span, x))
     }
 
-    /// Refuses positions at the end of a step where the limits of the potentials leave no place at the time of its
-    /// start: the work of what is prescribed is measured there, too.
+    /// Refuses positions at the end of a step where the limits of the potentials leave no place at the time
+    /// of its start: the work of what is prescribed is measured there, too.
     ///
     /// # Errors
     /// As [`Limited::check`](crate::Limited::check).

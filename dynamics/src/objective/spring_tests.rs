@@ -1,5 +1,5 @@
-//! A new term of the objective is one type: a spring between two vertices as a term, against the same spring as
-//! a potential.
+//! A new term of the objective is one type: a spring between two vertices as a term, against the same spring
+//! as a potential.
 
 use crate::{ImplicitOptions, Method, SheetModel, Simulation, State, StepError, leave_flat};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianSink};

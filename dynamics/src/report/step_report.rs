@@ -41,8 +41,9 @@ pub struct StepReport {
     /// the last iteration, as the root of its energy over the inertia term; for projection the length rates
     /// over the speed.
     pub residual: f64,
-    /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean square over
-    /// the vertices that are not pinned; `None` for methods other than BDF2 and implicit Euler. See
+    /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean
+    /// square over the vertices that are not pinned; `None` for methods other than BDF2 and implicit Euler.
+    /// See
     /// [`StepControl::accuracy`](crate::StepControl::accuracy).
     pub error: Option<f64>,
     /// Kinetic energy at the end, joules.

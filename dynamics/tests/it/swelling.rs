@@ -56,8 +56,9 @@ fn ran(model: SheetModel, steps: usize) -> (Simulation, StepReport) {
     (run, report.unwrap())
 }
 
-/// Energy, forces, stiffness (by forces of second order), strains and safe parts are those of a sheet that is made
-/// with these lengths. The energy of an area is `E h e^2 / 2` of smaller strains `e` there, and of a larger area.
+/// Energy, forces, stiffness (by forces of second order), strains and safe parts are those of a sheet that is
+/// made with these lengths. The energy of an area is `E h e^2 / 2` of smaller strains `e` there, and of a
+/// larger area.
 #[test]
 fn a_swollen_sheet_is_one_with_longer_edges() {
     let sheet = strip();
@@ -107,7 +108,8 @@ fn a_swollen_sheet_is_one_with_longer_edges() {
     }
 }
 
-/// A strip that is held at both ends and shrinks pulls with the force `E h w (s - s^2 / 2)`, and what it stores is the work of shrinking.
+/// A strip that is held at both ends and shrinks pulls with the force `E h w (s - s^2 / 2)`, and what it
+/// stores is the work of shrinking.
 #[test]
 fn a_held_strip_that_shrinks_pulls_at_its_supports() {
     let s = -0.002;

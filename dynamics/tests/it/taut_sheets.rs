@@ -32,8 +32,8 @@ fn settled(model: SheetModel, sheet: &Sheet, steps: usize) -> Simulation {
     run
 }
 
-/// `F L / (E h w)`, of a strip that is clamped at one end and pulled by 1 N at the other. (At the clamp the strip
-/// cannot narrow.)
+/// `F L / (E h w)`, of a strip that is clamped at one end and pulled by 1 N at the other. (At the clamp the
+/// strip cannot narrow.)
 #[test]
 fn a_strip_that_is_pulled_obeys_hooke() {
     let (length, width) = (0.3, 0.06);
@@ -84,8 +84,8 @@ fn a_taut_sheet_sags_as_far_as_it_stretches() {
     }
 }
 
-/// A ribbon that is twisted by the angle `t` per length, its ends at their distance, pulls with `E h t^2 w^3 /
-/// 24`, as its sides are helices.
+/// A ribbon that is twisted by the angle `t` per length, its ends at their distance, pulls with
+/// `E h t^2 w^3 / 24`, as its sides are helices.
 #[test]
 fn a_twisted_ribbon_pulls_as_its_sides_are_stretched() {
     let (length, width, angle) = (0.3, 0.01, std::f64::consts::PI);
@@ -115,8 +115,9 @@ fn a_twisted_ribbon_pulls_as_its_sides_are_stretched() {
     }
 }
 
-/// A film that is held at its corners under a weight comes to rest, and its supports carry what it weighs. (With slack
-/// that follows the bends freely it flipped between two states, and the supports carried a fifth.)
+/// A film that is held at its corners under a weight comes to rest, and its supports carry what it weighs.
+/// (With slack that follows the bends freely it flipped between two states, and the supports carried a
+/// fifth.)
 #[test]
 fn a_loaded_film_comes_to_rest() {
     let sheet = generate::isotropic_square(2, 0.2).unwrap();

@@ -22,8 +22,8 @@ pub(super) trait Job<const N: usize>: Sync {
     /// Does it. The parts contain those of the subtree.
     fn run(&self, subtree: &Subtree, parts: [FrontValues<'_>; N]) -> Result<(), Self::Error>;
 
-    /// Does it to all subtrees of a plan, with the same result for any number of threads. (A thread that waits for
-    /// another one may take up other work of the pool.)
+    /// Does it to all subtrees of a plan, with the same result for any number of threads. (A thread that
+    /// waits for another one may take up other work of the pool.)
     fn run_all(&self, plan: &Plan, arrays: [&mut [f64]; N]) -> Result<(), Self::Error>
     where
         Self: Sized,

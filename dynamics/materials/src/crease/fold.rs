@@ -66,11 +66,11 @@ impl Fold {
 
     /// The second derivatives of the fold angle, 3 x 3 blocks by the two ends and the two opposite vertices.
     ///
-    /// With the edge `e` from the first end and the vertex at `p` from there, the gradient of the angle by that
-    /// vertex is `g = |e| n / |n|^2`, `n` the normal of the face, and by the ends `(s - 1) g` and `-s g`, `s = p .
-    /// e / |e|^2`, for each of the two faces: the blocks are the derivatives of these, and that of the two
-    /// opposite vertices is zero. (Tamstorf and Grinspun, "Discrete bending forces and their Jacobians",
-    /// Graphical Models 75, 2013.)
+    /// With the edge `e` from the first end and the vertex at `p` from there, the gradient of the angle by
+    /// that vertex is `g = |e| n / |n|^2`, `n` the normal of the face, and by the ends `(s - 1) g` and
+    /// `-s g`, `s = p . e / |e|^2`, for each of the two faces: the blocks are the derivatives of these, and
+    /// that of the two opposite vertices is zero. (Tamstorf and Grinspun, "Discrete bending forces and their
+    /// Jacobians", Graphical Models 75, 2013.)
     pub(super) fn hessian(&self) -> [[Matrix3<f64>; 4]; 4] {
         let mut blocks = [[Matrix3::zeros(); 4]; 4];
         let sides = [

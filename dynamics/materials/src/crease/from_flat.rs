@@ -14,16 +14,16 @@ pub const FLAT: f64 = 1e-4;
 const RETURN: f64 = 1e-9;
 
 /// The displacements (`3V`, metres) across the plane of a flat sheet at positions `x` (`3V`, metres) at which
-/// the fold angles of edges are, to first order, the given targets (radians, positive for a valley), as far as
-/// a weighted sum of squares allows:
+/// the fold angles of edges are, to first order, the given targets (radians, positive for a valley), as far
+/// as a weighted sum of squares allows:
 ///
 /// ```text
 /// sum_e k_e l_e (sum_i g_ei w_i - target_e)^2 / 2  ->  min
 /// ```
 ///
 /// with the heights `w_i` of the vertices, the derivatives `g_ei` of the fold angle of edge `e`, its length
-/// `l_e` and its weight `k_e`; vertices of `held` stay. The lengths of rods are of second order here and are left
-/// out, so that this is a direction to search in, and not yet a branch along which rods can fold.
+/// `l_e` and its weight `k_e`; vertices of `held` stay. The lengths of rods are of second order here and are
+/// left out, so that this is a direction to search in, and not yet a branch along which rods can fold.
 ///
 /// Nothing if the sheet is not flat, or no edge has a target.
 ///
@@ -120,8 +120,8 @@ mod tests {
         assert_eq!(folding_from_flat(t, &moved, &targets, &[]), None);
     }
 
-    /// Two triangles: the apex of one rises by the target times its distance from the edge, less the tilt that
-    /// leaves the others in their places.
+    /// Two triangles: the apex of one rises by the target times its distance from the edge, less the tilt
+    /// that leaves the others in their places.
     #[test]
     fn one_crease_has_its_target() {
         let sheet = Sheet::new(

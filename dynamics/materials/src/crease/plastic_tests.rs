@@ -175,8 +175,8 @@ fn dissipation_is_work_less_energy() {
     );
 }
 
-/// A crease that yields in a sheet that bends turns by what its moment makes of it besides the angle that stays: `M
-/// = k (kink - rest - plastic)`.
+/// A crease that yields in a sheet that bends turns by what its moment makes of it besides the angle that
+/// stays: `M = k (kink - rest - plastic)`.
 #[test]
 fn the_kink_of_a_crease_that_yields_has_its_plastic_angle() {
     let (sheet, edge) = hinge();

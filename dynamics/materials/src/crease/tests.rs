@@ -204,8 +204,8 @@ fn bending_along_grid_lines_has_the_energy_of_a_plate() {
     assert!((energy - exact).abs() < 1e-12 * exact, "{energy} {exact}");
 }
 
-/// What is left of the fold angle without the bend of the sheet is the angle by which the springs turn as they were
-/// given: all of them at an edge, of the stiffness `k_i`, carry `sum k_i (kink - rest_i)` together.
+/// What is left of the fold angle without the bend of the sheet is the angle by which the springs turn as
+/// they were given: all of them at an edge, of the stiffness `k_i`, carry `sum k_i (kink - rest_i)` together.
 #[test]
 fn the_kink_is_the_fold_angle_without_the_bend_of_the_sheet() {
     let (sheet, x) = crumpled();

@@ -70,8 +70,8 @@ impl Arcs {
         })
     }
 
-    /// Writes the bends where a simulation starts to the numbers that are remembered of its faces, with the slack of
-    /// the bend of each face.
+    /// Writes the bends where a simulation starts to the numbers that are remembered of its faces, with the
+    /// slack of the bend of each face.
     pub(super) fn start(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
         let rows = self.rows(memory);
         for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
@@ -80,8 +80,9 @@ impl Arcs {
         }
     }
 
-    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces. Each has
-    /// the slack of the bend of that face around it which bends most, as far as the tension around it leaves it.
+    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces.
+    /// Each has the slack of the bend of that face around it which bends most, as far as the tension around
+    /// it leaves it.
     pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
         let own = &faces[self.faces.clone()];
         let rows = self.rows(memory);

@@ -12,7 +12,8 @@ pub(super) struct Bend {
     pub(super) chords: Vector3<f64>,
     /// The square of its bend, `(kappa h)^2`.
     pub(super) own: f64,
-    /// The squared bend that its slack is for: that of the face around that bends most, or what is left of it.
+    /// The squared bend that its slack is for: that of the face around that bends most, or what is left of
+    /// it.
     pub(super) squared: f64,
     /// Energy that slack has let go as it grew, and has not taken up again, joules.
     pub(super) credit: f64,

@@ -48,8 +48,8 @@ fn remembered(elastic: &ElasticSheet, x: &[f64]) -> Vec<f64> {
     memory
 }
 
-/// On a cylinder vertices have their places without strain, whatever the mesh: the energy is that of round-off
-/// against the one of chords without arcs. It is of the order of the error of the curvature.
+/// On a cylinder vertices have their places without strain, whatever the mesh: the energy is that of
+/// round-off against the one of chords without arcs. It is of the order of the error of the curvature.
 #[test]
 fn chords_on_a_cylinder_are_those_of_its_arcs() {
     for kind in KINDS {

@@ -7,8 +7,8 @@ use crate::evaluation::{Evaluation, Room};
 use crate::potential::At;
 use isosheet_linalg::parallel::{Work, in_order};
 
-/// Nanoseconds for the state of a face with its energy, as for its part of a Hessian, by a profile of a drape of 2437
-/// vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.
+/// Nanoseconds for the state of a face with its energy, as for its part of a Hessian, by a profile of a drape
+/// of 2437 vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.
 const FACE_TIME: f64 = 100.0;
 /// Nanoseconds for what a face does along a displacement, by the profile from which [`FACE_TIME`] is. It
 /// decides what is shared among threads, and no result.
@@ -58,7 +58,8 @@ impl EvaluatedFaces {
         self.states.at(at, work, state, take)
     }
 
-    /// Largest part of the displacement `dx` along which every face keeps a part of its distance from the limit.
+    /// Largest part of the displacement `dx` along which every face keeps a part of its distance from the
+    /// limit.
     pub(super) fn part_within(&self, faces: &[Face], at: At<'_>, dx: &[f64]) -> f64 {
         let mut part = 1.0;
         let course = |k: usize| faces[k].course(at, dx);

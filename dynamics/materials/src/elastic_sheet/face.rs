@@ -155,7 +155,8 @@ impl Face {
         self.limit = StrainLimit::new(limit);
     }
 
-    /// Measures what is beyond the limit in place of the elasticity, with a stiffness in joules per square metre.
+    /// Measures what is beyond the limit in place of the elasticity, with a stiffness in joules per square
+    /// metre.
     pub(super) fn measure_excess(&mut self, stiffness: f64) {
         self.law = Law::NONE;
         self.limit = self.limit.excess(stiffness);
@@ -177,7 +178,8 @@ impl Face {
         Slack::of_bend(self.rigidity, size, bend.squared)
     }
 
-    /// The stress against the lengths at rest, newtons per metre, by components `(s_11, sqrt(2) s_12, s_22)` as those of
+    /// The stress against the lengths at rest, newtons per metre, by components `(s_11, sqrt(2) s_12, s_22)`
+    /// as those of
     /// [`Face::strains`].
     pub(super) fn stress(&self, here: At<'_>, bend: &Bend) -> Vector3<f64> {
         let at = self.at(here, bend);
@@ -198,9 +200,9 @@ impl Face {
         Complex::new(squares[0] - squares[2], twice) / self.squared_lengths[k]
     }
 
-    /// The bend with slack for a squared bend of `wanted`, or as near to it as energy allows: slack that grows lets
-    /// energy go, and slack that closes takes up what it had let go, and no more. So the slack of a face gives
-    /// nothing to the motion, however the sheet bends to and fro.
+    /// The bend with slack for a squared bend of `wanted`, or as near to it as energy allows: slack that
+    /// grows lets energy go, and slack that closes takes up what it had let go, and no more. So the slack of
+    /// a face gives nothing to the motion, however the sheet bends to and fro.
     pub(super) fn with_slack(&self, here: At<'_>, bend: Bend, wanted: f64) -> Bend {
         if wanted == bend.squared {
             return bend;
@@ -260,7 +262,8 @@ impl Face {
         Vector3::new(error(0), error(1), error(2))
     }
 
-    /// Green's strain against the grown lengths, by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
+    /// Green's strain against the grown lengths, by the components of [`Face::strains`]; its Euclidean norm
+    /// is Frobenius'.
     pub(super) fn strain(&self, At { t, x, .. }: At<'_>) -> Vector3<f64> {
         let growth = self.swelling.growth(t);
         self.strains * self.errors(&self.edge_vectors(x), growth) / growth
@@ -290,8 +293,8 @@ impl Face {
         }
     }
 
-    /// Joules, with a `barrier` at the limit of this stiffness, joules per square metre; infinite at the limit and
-    /// beyond.
+    /// Joules, with a `barrier` at the limit of this stiffness, joules per square metre; infinite at the
+    /// limit and beyond.
     pub(super) fn energy(&self, at: &Strained, barrier: f64) -> f64 {
         let limit = self.limit.with_barrier(barrier);
         let elastic = self.law_at(at).energy();
@@ -371,14 +374,15 @@ impl Face {
         limit - KEPT_MARGIN * (limit - strain)
     }
 
-    /// Whether a displacement from where it is to `end` ends within the limit, and keeps a part of the distance from
-    /// it.
+    /// Whether a displacement from where it is to `end` ends within the limit, and keeps a part of the
+    /// distance from it.
     pub(super) fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
         let ends = [self.strain(at), self.strain(At { x: end, ..at })];
         ends[1].norm() <= self.bound(ends[0].norm())
     }
 
-    /// Its part of the Hessian; `part` says which part of the force density of an edge counts for its curvature.
+    /// Its part of the Hessian; `part` says which part of the force density of an edge counts for its
+    /// curvature.
     pub(super) fn blocks(&self, at: &Strained, barrier: f64, part: fn(f64) -> f64) -> Blocks {
         let law = self.tangent_law(at, barrier);
         let densities = self.densities(at, barrier).map(part);

@@ -10,9 +10,9 @@ use crate::vectors::{diameter, largest_norm};
 const BARRIER_PART: f64 = 0.03;
 
 /// The stiffness `kappa` of the barrier that an elastic sheet needs at a state, joules per square metre: 3 %
-/// of `rho (a L + v^2)`, with the mass per area `rho` (kg/m2), the largest acceleration `a` by constant forces
-/// (m/s2; 9.8 if there are none), the diameter `L` of the sheet and its largest speed `v`.
-/// What is in parentheses is about the square of the speed with which the sheet meets an obstacle.
+/// of `rho (a L + v^2)`, with the mass per area `rho` (kg/m2), the largest acceleration `a` by constant
+/// forces (m/s2; 9.8 if there are none), the diameter `L` of the sheet and its largest speed `v`. What is in
+/// parentheses is about the square of the speed with which the sheet meets an obstacle.
 pub(super) fn strain_barrier(density: f64, acceleration: f64, state: Reached<'_>) -> f64 {
     let speed = largest_norm(state.v);
     BARRIER_PART * density * (acceleration * diameter(state.x) + speed * speed)

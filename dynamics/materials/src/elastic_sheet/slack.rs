@@ -1,15 +1,15 @@
 //! A spring with some slack.
 
-/// A stress-strain law: a spring in series with a slack, which is pulled out to a bounded length by forces that
-/// are large against `s_0`,
+/// A stress-strain law: a spring in series with a slack, which is pulled out to a bounded length by forces
+/// that are large against `s_0`,
 ///
 /// ```text
 /// e = s / K + r s / (s_0 + s),
 /// ```
 ///
-/// for strains `e >= 0` with the stress `s`. Its slope rises from that of the two in series, `1 / (1 / K + r /
-/// s_0)`, to `K`, and the strain is never more than `r` beyond `s / K`. The law is a quadratic equation for the
-/// stress.
+/// for strains `e >= 0` with the stress `s`. Its slope rises from that of the two in series,
+/// `1 / (1 / K + r / s_0)`, to `K`, and the strain is never more than `r` beyond `s / K`. The law is a
+/// quadratic equation for the stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slack {
     /// `r`.
@@ -22,12 +22,12 @@ pub(super) struct Slack {
 /// flexural rigidity over the squared size of the face.
 ///
 /// A chord is shorter than its arc by 1/24 of its squared bend, so that the slack is seven times what a bend
-/// explains: it lets a sheet bend further within a step. Slack that is pulled out by a small force lets twisted
-/// ribbons and cones stretch; a small slack, and a large force, hinder bends that the mesh does not resolve.
-/// Measured (80 sheets that are clamped along random lines; factorisations a step of these and of a sheet of 289
-/// vertices that hangs by a corner; the pull of a ribbon that is twisted by half a turn, on 2 and 4 squares
-/// across, over the exact one; the drop of a heavy strip with `Gamma` = 100, on 4 squares across, against the
-/// elastica):
+/// explains: it lets a sheet bend further within a step. Slack that is pulled out by a small force lets
+/// twisted ribbons and cones stretch; a small slack, and a large force, hinder bends that the mesh does not
+/// resolve. Measured (80 sheets that are clamped along random lines; factorisations a step of these and of a
+/// sheet of 289 vertices that hangs by a corner; the pull of a ribbon that is twisted by half a turn, on 2
+/// and 4 squares across, over the exact one; the drop of a heavy strip with `Gamma` = 100, on 4 squares
+/// across, against the elastica):
 ///
 /// | slack | force | clamped: end | least depth | factorisations | hanging | ribbon 2 | ribbon 4 | drop |
 /// |---|---|---|---|---|---|---|---|---|
@@ -41,20 +41,20 @@ pub(super) struct Slack {
 /// | 1 | 20 | 80 | 0.73 | 5.8 | 11.5 | 0.19 | 0.79 | 0.008 |
 /// | 1 | 80 | 80 | 0.67 | 5.5 | 10.8 | 0.54 | 1.01 | 0.007 |
 ///
-/// The least depth is that over the depth with faces of at most 2000 `D / h^2`, which bend and stretch freely;
-/// the next sheets are at 0.75 to 0.89. `cargo xtask locking --yardsticks slack` has cones and strips that are
-/// pushed together.
+/// The least depth is that over the depth with faces of at most 2000 `D / h^2`, which bend and stretch
+/// freely; the next sheets are at 0.75 to 0.89. `cargo xtask locking --yardsticks slack` has cones and strips
+/// that are pushed together.
 const RANGE: f64 = 0.3;
 const FORCE: f64 = 20.0;
 
-/// The least stiffness with which slack is pulled out, in parts of the flexural rigidity over the squared size of the
-/// face: it is more than the force above says where `(k h)^2` is above 2/15.
+/// The least stiffness with which slack is pulled out, in parts of the flexural rigidity over the squared
+/// size of the face: it is more than the force above says where `(k h)^2` is above 2/15.
 ///
-/// The slack of a face that bends by a radian is as wide as three tenths of its size, and without this the weight of the
-/// sheet would pull it out. Measured with a [`TENSION`] of 5: area mean of the height of a cloth of 1 m on a ball of 0.2 m
-/// (0.1 kg, 5e-5 N m, 3e5 N/m) on 289 and 1089 vertices, in metres; soft sheets without slack come to -0.350 and -0.354
-/// on 4225 and 16641. Largest errors of the energy of a strip that is pushed together by 70 % on 4 and 8 squares across,
-/// and of cones with a wedge.
+/// The slack of a face that bends by a radian is as wide as three tenths of its size, and without this the
+/// weight of the sheet would pull it out. Measured with a [`TENSION`] of 5: area mean of the height of a
+/// cloth of 1 m on a ball of 0.2 m (0.1 kg, 5e-5 N m, 3e5 N/m) on 289 and 1089 vertices, in metres; soft
+/// sheets without slack come to -0.350 and -0.354 on 4225 and 16641. Largest errors of the energy of a strip
+/// that is pushed together by 70 % on 4 and 8 squares across, and of cones with a wedge.
 ///
 /// | stiffness | 289 | 1089 | strip | cones |
 /// |---|---|---|---|---|
@@ -63,16 +63,17 @@ const FORCE: f64 = 20.0;
 /// | 1000 | -0.359 | -0.359 | 0.209, 0.018 | 0.018 |
 const STIFFNESS: f64 = 500.0;
 
-/// The tension up to which a face keeps all of its slack, in parts of the flexural rigidity over the squared size of the
-/// face. Beyond, the slack is as wide as that tension over the tension.
+/// The tension up to which a face keeps all of its slack, in parts of the flexural rigidity over the squared
+/// size of the face. Beyond, the slack is as wide as that tension over the tension.
 ///
-/// A bend of the curvature `k` costs `D k^2 / 2`, and a tension `s` gains up to `s r` by its slack `r = 0.3 (k h)^2`: no
-/// bend pays for itself if all of the slack is left up to 5/3 `D / h^2`. A bound as small as that makes bends lock which
-/// move fast and which the mesh does not resolve, as their stresses look like a tension. Measured: cotton, 0.3 m x 0.06 m,
-/// that is pulled by 1 N at the vertices of its end, on 4 and 8 squares across, extension over Hooke's law; factorisations
-/// (refused steps) of a sheet that swings from a corner and of a cloth that falls on a ball, with limits of the strain of
-/// 5 and 1 %, 289 vertices, 1 s without damping. A film that is stretched by 5 % has the wrinkles of its material with all
-/// bounds, and one ridge without.
+/// A bend of the curvature `k` costs `D k^2 / 2`, and a tension `s` gains up to `s r` by its slack
+/// `r = 0.3 (k h)^2`: no bend pays for itself if all of the slack is left up to 5/3 `D / h^2`. A bound as
+/// small as that makes bends lock which move fast and which the mesh does not resolve, as their stresses look
+/// like a tension. Measured: cotton, 0.3 m x 0.06 m, that is pulled by 1 N at the vertices of its end, on 4
+/// and 8 squares across, extension over Hooke's law; factorisations (refused steps) of a sheet that swings
+/// from a corner and of a cloth that falls on a ball, with limits of the strain of 5 and 1 %, 289 vertices, 1
+/// s without damping. A film that is stretched by 5 % has the wrinkles of its material with all bounds, and
+/// one ridge without.
 ///
 /// | tension | cotton | swinging | falling, 5 % | 1 % |
 /// |---|---|---|---|---|
@@ -91,7 +92,8 @@ impl Slack {
         force: 0.0,
     };
 
-    /// Of a face of a squared size (m2) whose bend is `squared_bend`, of a sheet with a flexural rigidity (N m).
+    /// Of a face of a squared size (m2) whose bend is `squared_bend`, of a sheet with a flexural rigidity (N
+    /// m).
     pub(super) fn of_bend(rigidity: f64, squared_size: f64, squared_bend: f64) -> Self {
         let range = RANGE * squared_bend;
         Self {
@@ -100,7 +102,8 @@ impl Slack {
         }
     }
 
-    /// The part of the slack that a tension (N/m) leaves to a face, `min(1, 20/3 D / (h^2 s))`; all of it under pressure.
+    /// The part of the slack that a tension (N/m) leaves to a face, `min(1, 20/3 D / (h^2 s))`; all of it
+    /// under pressure.
     pub(super) fn left_by(tension: f64, rigidity: f64, squared_size: f64) -> f64 {
         let bearable = TENSION * rigidity / squared_size;
         match tension > bearable {
@@ -141,7 +144,8 @@ impl Slack {
         self.range * self.force * (part.ln_1p() - part / (1.0 + part))
     }
 
-    /// What the slack yields at a stress, over that stress: `-d/ds` of its strain over the stress, metres per newton.
+    /// What the slack yields at a stress, over that stress: `-d/ds` of its strain over the stress, metres per
+    /// newton.
     pub(super) fn yields(&self, stress: f64) -> f64 {
         if self.range == 0.0 {
             return 0.0;

@@ -18,7 +18,8 @@ pub(super) struct Surroundings {
 pub(super) struct Neighbour {
     /// Its number in the sheet.
     pub(super) face: usize,
-    /// `exp(2 i a)`, with the angle `a` from the first axis of the other face to its own when faces are unfolded.
+    /// `exp(2 i a)`, with the angle `a` from the first axis of the other face to its own when faces are
+    /// unfolded.
     turn: Complex<f64>,
 }
 
@@ -71,8 +72,8 @@ fn unfolded(topology: &Topology, faces: &[Face], face: FaceId) -> Vec<Neighbour>
     found
 }
 
-/// The largest principal value of the mean of a tensor over faces by their areas. `of` gives the area of a face and the
-/// components `(s_11, sqrt(2) s_12, s_22)` by its own axes.
+/// The largest principal value of the mean of a tensor over faces by their areas. `of` gives the area of a
+/// face and the components `(s_11, sqrt(2) s_12, s_22)` by its own axes.
 pub(super) fn largest_of_mean(
     around: &[Neighbour],
     of: impl Fn(usize) -> (f64, Vector3<f64>),

@@ -47,9 +47,9 @@ pub struct FaceCurvature {
 }
 
 impl FaceCurvature {
-    /// Of a sheet of which the edge lengths count. At `creases`, and around faces all corners of which are `held`, the
-    /// curvature jumps, and no fit of slopes reaches across: the sheet is cut along its creases, and faces that are
-    /// held are flat.
+    /// Of a sheet of which the edge lengths count. At `creases`, and around faces all corners of which are
+    /// `held`, the curvature jumps, and no fit of slopes reaches across: the sheet is cut along its creases,
+    /// and faces that are held are flat.
     ///
     /// # Errors
     /// [`PlateBendingError`] for a vertex or an edge that the sheet has not.
@@ -90,12 +90,12 @@ impl FaceCurvature {
         })
     }
 
-    /// The second fundamental form of each face at positions `x` (`3V`, metres), `(k11, k12, k22)`, 1/m: the first
-    /// axis along the first edge of the face, the second one counter-clockwise across, positive where the sheet is
-    /// a valley as seen from the side from which faces are counter-clockwise.
+    /// The second fundamental form of each face at positions `x` (`3V`, metres), `(k11, k12, k22)`, 1/m: the
+    /// first axis along the first edge of the face, the second one counter-clockwise across, positive where
+    /// the sheet is a valley as seen from the side from which faces are counter-clockwise.
     ///
-    /// It is the part of the second derivatives along the normal of the face. Derivatives are by the lengths of the
-    /// rest shape, of which an isometric sheet has the same ones.
+    /// It is the part of the second derivatives along the normal of the face. Derivatives are by the lengths
+    /// of the rest shape, of which an isometric sheet has the same ones.
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
@@ -115,8 +115,9 @@ impl FaceCurvature {
         form.collect()
     }
 
-    /// The ruling of each face at positions `x` (`3V`, metres), with the curvature across it; nothing where the sheet
-    /// is not bent beyond the noise of lengths ([`Ruling::of_face`], [`GaussCurvature::error_of_lengths`]).
+    /// The ruling of each face at positions `x` (`3V`, metres), with the curvature across it; nothing where
+    /// the sheet is not bent beyond the noise of lengths ([`Ruling::of_face`],
+    /// [`GaussCurvature::error_of_lengths`]).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
@@ -136,8 +137,8 @@ impl FaceCurvature {
     }
 }
 
-/// The sheet cut along edges, with the vertex of the whole sheet for each of its own; faces and their corners keep their
-/// order. A line of edges that ends inside of the sheet is cut up to the edge at its end.
+/// The sheet cut along edges, with the vertex of the whole sheet for each of its own; faces and their corners
+/// keep their order. A line of edges that ends inside of the sheet is cut up to the edge at its end.
 fn cut_along(sheet: &Sheet, edges: &[EdgeId]) -> (Sheet, Vec<VertexId>) {
     let t = sheet.topology();
     let whole = || (sheet.clone(), t.vertex_ids().collect());

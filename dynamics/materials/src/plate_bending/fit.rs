@@ -11,8 +11,9 @@ use std::f64::consts::SQRT_2;
 const LEAST_SINGULAR: f64 = 0.04;
 /// Largest number of rings of faces around an edge that take part in a fit.
 const MAX_RINGS: usize = 4;
-/// Coefficients of a quadratic polynomial in two variables, and with the two cubic ones that are zero at a straight clamp
-/// with their slopes: `z^3` and `z^2 s`, with the distance `z` from the clamp and the distance `s` along it.
+/// Coefficients of a quadratic polynomial in two variables, and with the two cubic ones that are zero at a
+/// straight clamp with their slopes: `z^3` and `z^2 s`, with the distance `z` from the clamp and the distance
+/// `s` along it.
 const QUADRATIC: usize = 6;
 const AT_CLAMP: usize = 8;
 
@@ -23,8 +24,8 @@ pub(super) type Combination = Vec<(VertexId, f64)>;
 pub(super) struct Fit {
     /// The derivative along the normal that points out of the left face of the edge.
     pub(super) slope: Combination,
-    /// The second derivatives `(11, sqrt(2) 12, 22)`, the first axis along the edge and the second one to its left;
-    /// nothing where there is no polynomial, but the slope of a face.
+    /// The second derivatives `(11, sqrt(2) 12, 22)`, the first axis along the edge and the second one to its
+    /// left; nothing where there is no polynomial, but the slope of a face.
     pub(super) bend: Vec<(VertexId, Vector3<f64>)>,
     /// The parts that slopes held by line clamps have in both.
     pub(super) held: Vec<HeldPart>,
@@ -118,10 +119,11 @@ pub(super) fn place(
     [p, q, (third, position)]
 }
 
-/// The fit at an edge; nothing at edges that are closed to fits, and at free edges of meshes too small for a fit.
+/// The fit at an edge; nothing at edges that are closed to fits, and at free edges of meshes too small for a
+/// fit.
 ///
-/// Where the rigidity of the plate jumps no fit reaches across, but that of the slope at the very edge: there the
-/// curvature along the normal jumps such that the moment does not.
+/// Where the rigidity of the plate jumps no fit reaches across, but that of the slope at the very edge: there
+/// the curvature along the normal jumps such that the moment does not.
 pub(super) fn fit_at(
     sheet: &Sheet,
     roots: &Roots,
@@ -261,14 +263,15 @@ fn known(
     all
 }
 
-/// The polynomial that fits the points by least squares, with weights that fall off over the length `size`, at the
-/// origin: its derivative along `-y`, and its second derivatives; nothing if the points do not determine it. It is
-/// quadratic; with slopes that are known it fits them, too, and is exact for all cubic bends at the nearest clamp. Below
-/// the x-axis its second derivative along `y` is `softer` times that above; then only its slope is given.
+/// The polynomial that fits the points by least squares, with weights that fall off over the length `size`,
+/// at the origin: its derivative along `-y`, and its second derivatives; nothing if the points do not
+/// determine it. It is quadratic; with slopes that are known it fits them, too, and is exact for all cubic
+/// bends at the nearest clamp. Below the x-axis its second derivative along `y` is `softer` times that above;
+/// then only its slope is given.
 ///
-/// (The slopes of quadratic polynomials have an error of second order, which cancels in the curvature of a face with such
-/// slopes on all sides, but not in that of a face with the exact slope of a clamp on one. With them alone clamped square
-/// plates of 8 and of 16 squares bent too much by 18 and 4 %.)
+/// (The slopes of quadratic polynomials have an error of second order, which cancels in the curvature of a
+/// face with such slopes on all sides, but not in that of a face with the exact slope of a clamp on one. With
+/// them alone clamped square plates of 8 and of 16 squares bent too much by 18 and 4 %.)
 fn fit(
     points: &[(VertexId, Vector2<f64>)],
     known: &[Known],

@@ -15,10 +15,10 @@ use nalgebra::Matrix3;
 /// 1/2 [ D11 k_1^2 + 2 D12 k_1 k_2 + D22 k_2^2 + 4 D66 k_12^2 ]
 /// ```
 ///
-/// per area (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, sections 61 and 62; there `D66` is `D_k`). With the
-/// Young's moduli `E1` and `E2`, the shear modulus `G12` and the Poisson's ratios `nu12 / E1 = nu21 / E2` of a
-/// homogeneous plate of thickness `h` it is `D11 = E1 h^3 / (12 (1 - nu12 nu21))`, `D22 = D11 E2 / E1`, `D12 =
-/// nu12 D22` and `D66 = G12 h^3 / 12`.
+/// per area (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, sections 61 and 62; there `D66` is `D_k`). With
+/// the Young's moduli `E1` and `E2`, the shear modulus `G12` and the Poisson's ratios `nu12 / E1 = nu21 / E2`
+/// of a homogeneous plate of thickness `h` it is `D11 = E1 h^3 / (12 (1 - nu12 nu21))`, `D22 = D11 E2 / E1`,
+/// `D12 = nu12 D22` and `D66 = G12 h^3 / 12`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrthotropicPlate {
     /// `D11`: resists curvature along the direction, newton metres.

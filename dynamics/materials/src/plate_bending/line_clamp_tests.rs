@@ -31,7 +31,8 @@ fn plate(sheet: &Sheet, clamps: &[LineClamp]) -> PlateBending {
     PlateBending::held(sheet, 1.0, &edges).unwrap()
 }
 
-/// How far the vertices of a plate of rigidity 1 go under a uniform load of 1 in linear theory, clamped along a line.
+/// How far the vertices of a plate of rigidity 1 go under a uniform load of 1 in linear theory, clamped along
+/// a line.
 fn deflections(sheet: &Sheet, line: Vec<VertexId>) -> Vec<f64> {
     let clamp = LineClamp {
         vertices: line.clone(),
@@ -55,8 +56,8 @@ fn deflections(sheet: &Sheet, line: Vec<VertexId>) -> Vec<f64> {
     all
 }
 
-/// A square plate that is clamped on all sides bends by 1.265319e-3 q a^4 / D in its middle (Taylor and Govindjee, 2004):
-/// to 3 % with 16 cells across.
+/// A square plate that is clamped on all sides bends by 1.265319e-3 q a^4 / D in its middle (Taylor and
+/// Govindjee, 2004): to 3 % with 16 cells across.
 #[test]
 fn a_plate_clamped_on_all_sides_bends_as_in_the_literature() {
     let cells = 16;
@@ -73,8 +74,8 @@ fn a_plate_clamped_on_all_sides_bends_as_in_the_literature() {
     }
 }
 
-/// A strip of rigidity 1 under a uniform load of 1, clamped at the one line of vertices at its end, bends down
-/// by `L^4 / 8` in linear theory, on any mesh with an error of second order.
+/// A strip of rigidity 1 under a uniform load of 1, clamped at the one line of vertices at its end, bends
+/// down by `L^4 / 8` in linear theory, on any mesh with an error of second order.
 #[test]
 fn one_line_of_vertices_is_a_clamp() {
     let length = 0.3_f64;
@@ -137,8 +138,8 @@ fn a_sheet_turns_with_its_clamp() {
     }
 }
 
-/// Forces and moments on a bent sheet balance: with what the clamp does to the slopes there is no force and no
-/// moment left, wherever the vertices are. Forces are differences of energies.
+/// Forces and moments on a bent sheet balance: with what the clamp does to the slopes there is no force and
+/// no moment left, wherever the vertices are. Forces are differences of energies.
 #[test]
 fn the_moment_of_a_clamp_balances_the_forces() {
     let sheet = strip([5, 3], [0.3, 0.1], Diagonals::Rising, 0.2, 0.0);

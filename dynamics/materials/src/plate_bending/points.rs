@@ -7,12 +7,12 @@ use isosheet_linalg::parallel::{Work, pieces};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 
-/// Nanoseconds for the second derivatives at a point, as for its forces, by a profile of a drape of 2437 vertices on
-/// one core at 2.4 GHz. It decides what is shared among threads, and no result.
+/// Nanoseconds for the second derivatives at a point, as for its forces, by a profile of a drape of 2437
+/// vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.
 const POINT_TIME: f64 = 35.0;
 
-/// The points of a plate that is flat without stress, where it was evaluated last: the second derivatives of positions
-/// as their stencils have them, and the energy, joules.
+/// The points of a plate that is flat without stress, where it was evaluated last: the second derivatives of
+/// positions as their stencils have them, and the energy, joules.
 #[derive(Debug, Default)]
 pub(super) struct FlatPoints(Evaluation<(Matrix3<f64>, f64)>);
 
@@ -40,8 +40,8 @@ pub(super) fn work(stencils: &Stencils) -> Work {
     }
 }
 
-/// Adds the forces of all points to the rows of `gradient`: by the second derivatives, and what turning the normal of a
-/// point makes at its corners.
+/// Adds the forces of all points to the rows of `gradient`: by the second derivatives, and what turning the
+/// normal of a point makes at its corners.
 pub(super) fn add_forces<'a, const N: usize>(
     stencils: &Stencils,
     second: impl Fn(usize) -> &'a Matrix3<f64> + Sync,

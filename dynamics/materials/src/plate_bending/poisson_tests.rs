@@ -137,13 +137,13 @@ fn eigenvalues(a: DMatrix<f64>, b: DMatrix<f64>) -> Vec<f64> {
     values
 }
 
-/// Errors below which those of the reference count: Ritz's values are bounds from above, up to 0.4 % above what all meshes
-/// of 16 cells across agree on (`cargo xtask validation`).
+/// Errors below which those of the reference count: Ritz's values are bounds from above, up to 0.4 % above
+/// what all meshes of 16 cells across agree on (`cargo xtask validation`).
 const REFERENCE: f64 = 5e-3;
 
-/// The first frequencies of a square cantilever plate with Poisson's ratio 0.3, `omega a^2 sqrt(rho / D)`: the
-/// first bend and the first twist (A. W. Leissa, "The free vibration of rectangular plates", J. Sound Vib. 31,
-/// 1973).
+/// The first frequencies of a square cantilever plate with Poisson's ratio 0.3, `omega a^2 sqrt(rho / D)`:
+/// the first bend and the first twist (A. W. Leissa, "The free vibration of rectangular plates", J. Sound
+/// Vib. 31, 1973).
 #[test]
 fn a_cantilever_plate_has_the_frequencies_of_the_literature() {
     for pattern in PATTERNS {
@@ -163,9 +163,9 @@ fn a_cantilever_plate_has_the_frequencies_of_the_literature() {
     }
 }
 
-/// `P L^3 / (3 E I)` with `E I / w = D (1 - nu^2)`: the tip of a narrow strip under a load at its end. (At the clamp
-/// the strip cannot narrow: there, along about half of its width, it is stiffer by `nu^2`, under thrice the mean squared
-/// moment.)
+/// `P L^3 / (3 E I)` with `E I / w = D (1 - nu^2)`: the tip of a narrow strip under a load at its end. (At
+/// the clamp the strip cannot narrow: there, along about half of its width, it is stiffer by `nu^2`, under
+/// thrice the mean squared moment.)
 #[test]
 fn a_narrow_strip_bends_as_a_beam_does() {
     let (length, width) = (1.0, 0.05);
@@ -239,8 +239,8 @@ fn a_plate_on_edge_buckles_where_ritz_says() {
     }
 }
 
-/// A developable surface, whichever way it bends: the energy `D k^2 / 2` does not depend on Poisson's ratio, at
-/// free edges as inside.
+/// A developable surface, whichever way it bends: the energy `D k^2 / 2` does not depend on Poisson's ratio,
+/// at free edges as inside.
 #[test]
 fn poissons_ratio_means_nothing_where_a_sheet_is_developable() {
     let curvature = 0.4;

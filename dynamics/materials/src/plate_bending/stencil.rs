@@ -12,19 +12,21 @@ use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
-/// Points of each face at which its second derivatives are taken. The point with the number `p` is one of the face
+/// Points of each face at which its second derivatives are taken. The point with the number `p` is one of the
+/// face
 /// [`face_of`]`(p)`.
 pub(super) const POINTS: usize = 3;
 
 /// How much more than the polynomials the second derivatives vary in a face, the root of 5/3.
 ///
-/// Second derivatives of a wave are smoothed by the fits: on a strip with the spacing `h`, both those of a cell and
-/// those of the polynomials are `w'' + 5/24 h^2 w''''` in the middle of a cell, so that their squares integrate to
-/// `5/12 h^2 |w'''|^2` less than those of `w''`. The polynomials at the two ends of a cell differ by `h w'''`, and
-/// their squared deviations from the mean are `1/4 h^2 |w'''|^2`. On triangles the factor that gives the energy of
-/// waves to fourth order is 1.5 to 5.3 in place of 5/3, by mesh and direction (on the average 2.9); larger ones than 5/3
-/// make supported plates on coarse meshes too stiff: largest errors of the deflection of square plates, simply supported, isotropic
-/// and orthotropic, and clamped, on six meshes of 8 squares (`cargo xtask validation`), %:
+/// Second derivatives of a wave are smoothed by the fits: on a strip with the spacing `h`, both those of a
+/// cell and those of the polynomials are `w'' + 5/24 h^2 w''''` in the middle of a cell, so that their
+/// squares integrate to `5/12 h^2 |w'''|^2` less than those of `w''`. The polynomials at the two ends of a
+/// cell differ by `h w'''`, and their squared deviations from the mean are `1/4 h^2 |w'''|^2`. On triangles
+/// the factor that gives the energy of waves to fourth order is 1.5 to 5.3 in place of 5/3, by mesh and
+/// direction (on the average 2.9); larger ones than 5/3 make supported plates on coarse meshes too stiff:
+/// largest errors of the deflection of square plates, simply supported, isotropic and orthotropic, and
+/// clamped, on six meshes of 8 squares (`cargo xtask validation`), %:
 ///
 /// | factor | 0 | 1 | **5/3** | 2.25 |
 /// |---|---|---|---|---|
@@ -39,8 +41,8 @@ pub(super) fn face_of(point: usize) -> usize {
 }
 
 /// For each point the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, the three components of a weight
-/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, `A` the part of the area of the face that is
-/// the point's, and `R` the root of the law of the plate there, see [`Roots`].
+/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, `A` the part of the area of the face
+/// that is the point's, and `R` the root of the law of the plate there, see [`Roots`].
 #[derive(Debug, Clone)]
 pub(super) struct Stencils {
     /// Where the entries of each point begin, and their number.
@@ -156,9 +158,9 @@ impl Stencils {
         stencils
     }
 
-    /// Changes the weights such that the second derivatives of the positions of `sheet` have no part along the
-    /// faces: by that part, as a multiple of two edges of each face, which stay edges wherever it goes. The
-    /// curvatures `R k` that are left, 1/m.
+    /// Changes the weights such that the second derivatives of the positions of `sheet` have no part along
+    /// the faces: by that part, as a multiple of two edges of each face, which stay edges wherever it goes.
+    /// The curvatures `R k` that are left, 1/m.
     pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
         let mut curvatures = Vec::new();
         for point in 0..self.count() {
@@ -189,8 +191,8 @@ impl Stencils {
         bent.collect()
     }
 
-    /// The second derivatives of a point at positions `x` as multiples of the edges from the first corner of its face to
-    /// the second and to the third one, and of the normal.
+    /// The second derivatives of a point at positions `x` as multiples of the edges from the first corner of
+    /// its face to the second and to the third one, and of the normal.
     fn parts(&self, number: usize, corners: &[VertexId; 3], x: &[f64]) -> [Vector3<f64>; 3] {
         let mut derivatives = self.of(number).apply_to_positions(x);
         for d in self.directors.get(&(number as u32)).into_iter().flatten() {
@@ -249,8 +251,8 @@ fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     (roots.rigidity(face) * area).sqrt()
 }
 
-/// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its edges; those
-/// that clamps hold apart.
+/// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its
+/// edges; those that clamps hold apart.
 fn face_weights(
     sheet: &Sheet,
     fits: &[Option<Fit>],

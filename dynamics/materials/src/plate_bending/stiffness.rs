@@ -6,10 +6,10 @@
 /// D/2 [ (1 - nu) |k|^2 + nu (tr k)^2 ] = D/2 [ (k_1 + k_2)^2 - 2 (1 - nu) k_1 k_2 ]
 /// ```
 ///
-/// per area, with the flexural rigidity `D`, Poisson's ratio `nu` and the principal curvatures `k_1` and `k_2`
-/// (Kirchhoff's plate; S. P. Timoshenko and S. Woinowsky-Krieger, *Theory of Plates and Shells*, 2nd ed., 1959,
-/// section 11). A developable surface has one principal curvature, where this is `D k_1^2 / 2` for every ratio;
-/// a twist `k_12` stores `D (1 - nu) k_12^2`.
+/// per area, with the flexural rigidity `D`, Poisson's ratio `nu` and the principal curvatures `k_1` and
+/// `k_2` (Kirchhoff's plate; S. P. Timoshenko and S. Woinowsky-Krieger, *Theory of Plates and Shells*, 2nd
+/// ed., 1959, section 11). A developable surface has one principal curvature, where this is `D k_1^2 / 2` for
+/// every ratio; a twist `k_12` stores `D (1 - nu) k_12^2`.
 ///
 /// ```
 /// use isosheet_materials::{Material, PlateStiffness};

@@ -15,9 +15,9 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The curvatures that the points of a plate have without moments, natural ones and the plastic ones of a plate
-/// that yields. Curvatures are those of the stencils, `R k` with the root `R` of the law ([`Roots`]), so that
-/// a norm is that of the elastic energy.
+/// The curvatures that the points of a plate have without moments, natural ones and the plastic ones of a
+/// plate that yields. Curvatures are those of the stencils, `R k` with the root `R` of the law ([`Roots`]),
+/// so that a norm is that of the elastic energy.
 #[derive(Debug)]
 pub(super) struct StressFreeCurvature {
     roots: Roots,

@@ -341,8 +341,8 @@ fn the_smallest_meshes_bend() {
     assert!(plate.energy(At::new(0.0, &y[..9])) < 1e-30);
 }
 
-/// A cantilever of length `L` whose outer half is of another stiffness: under a uniform load the tip of a beam of the
-/// pieces `D_1` and `D_2` sinks by `q L^4 / 8 [1 / D_1 + (1 / D_2 - 1 / D_1) / 16]`.
+/// A cantilever of length `L` whose outer half is of another stiffness: under a uniform load the tip of a
+/// beam of the pieces `D_1` and `D_2` sinks by `q L^4 / 8 [1 / D_1 + (1 / D_2 - 1 / D_1) / 16]`.
 #[test]
 fn a_cantilever_of_two_stiffnesses_is_a_beam_of_two_pieces() {
     let (length, overhang) = (0.3, 0.1);
@@ -411,8 +411,8 @@ fn patches_that_make_no_sense_are_refused() {
     }
 }
 
-/// Of waves `cos(k x)` in any direction the energy is too small by a part of second order in `k h`, which is smaller
-/// than that of the mean curvatures of the faces, and on the whole less than half of it.
+/// Of waves `cos(k x)` in any direction the energy is too small by a part of second order in `k h`, which is
+/// smaller than that of the mean curvatures of the faces, and on the whole less than half of it.
 #[test]
 fn waves_have_nearly_the_energy_of_their_plate() {
     let h = 0.025;

@@ -8,8 +8,8 @@ use isosheet_mesh::VertexId;
 use isosheet_motion::Profile;
 use nalgebra::{Matrix3, Vector3};
 
-/// A force on a point of a [`RigidBody`](crate::RigidBody): its size (newtons) follows a profile, its direction is
-/// fixed in space.
+/// A force on a point of a [`RigidBody`](crate::RigidBody): its size (newtons) follows a profile, its
+/// direction is fixed in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyForce {
     at: CarriedPoint,
@@ -41,8 +41,8 @@ impl Force for BodyForce {
     }
 }
 
-/// A torque on a [`RigidBody`](crate::RigidBody): its size (newton metres) follows a profile, its axis is fixed in
-/// space.
+/// A torque on a [`RigidBody`](crate::RigidBody): its size (newton metres) follows a profile, its axis is
+/// fixed in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyTorque {
     vertices: [VertexId; 4],

@@ -56,9 +56,9 @@ enum Kind {
 }
 
 impl JointCoordinate {
-    /// The angle (radians) by which a body has turned about its first edge, which is
-    /// [on the axis](crate::RigidBody::with_edge) of a hinge and is held there, counter-clockwise as seen against
-    /// the direction from the first vertex to the second. The vertices are at positions `x` (`3V`, metres).
+    /// The angle (radians) by which a body has turned about its first edge, which is [on the
+    /// axis](crate::RigidBody::with_edge) of a hinge and is held there, counter-clockwise as seen against the
+    /// direction from the first vertex to the second. The vertices are at positions `x` (`3V`, metres).
     pub fn angle(vertices: [VertexId; 4], x: &[f64]) -> Self {
         let [first, second, beside, _] = vertices;
         let [a, b, p] = [first, second, beside].map(|v| point(x, v));
@@ -136,8 +136,8 @@ fn checked(what: &'static str, value: f64) -> Result<f64, JointError> {
     }
 }
 
-/// A spring at a joint, `V = k (q - q0(t))^2 / 2` with the coordinate `q` that the joint leaves free and a profile
-/// `q0`. Angles count turns.
+/// A spring at a joint, `V = k (q - q0(t))^2 / 2` with the coordinate `q` that the joint leaves free and a
+/// profile `q0`. Angles count turns.
 #[derive(Debug, Clone)]
 pub struct JointSpring {
     coordinate: JointCoordinate,
@@ -146,8 +146,8 @@ pub struct JointSpring {
 }
 
 impl JointSpring {
-    /// A spring of a stiffness, in newton metres per radian or newtons per metre, that is at rest at radians or
-    /// metres by a profile.
+    /// A spring of a stiffness, in newton metres per radian or newtons per metre, that is at rest at radians
+    /// or metres by a profile.
     ///
     /// # Errors
     /// [`JointError`] naming what cannot be used.
@@ -226,8 +226,8 @@ struct Damper {
 }
 
 impl SheetModel {
-    /// Adds a damper at a joint, of a coefficient in newton metres seconds or newton seconds per metre. What it
-    /// takes is a part of `StepReport::work`.
+    /// Adds a damper at a joint, of a coefficient in newton metres seconds or newton seconds per metre. What
+    /// it takes is a part of `StepReport::work`.
     ///
     /// # Errors
     /// [`JointError::Number`].
@@ -262,9 +262,9 @@ impl ImplicitForce for Damper {
     }
 }
 
-/// The incremental potential `c (g . (a - a_y))^2 / 2` of a damper in a step that makes velocities of positions by
-/// `x = y + h v`, with the arms `a` and `a_y` at `x` and `y`, and the derivative `g` of the coordinate where the
-/// velocities at the start lead to; times `1 / h`.
+/// The incremental potential `c (g . (a - a_y))^2 / 2` of a damper in a step that makes velocities of
+/// positions by `x = y + h v`, with the arms `a` and `a_y` at `x` and `y`, and the derivative `g` of the
+/// coordinate where the velocities at the start lead to; times `1 / h`.
 #[derive(Debug)]
 struct DamperStep {
     damper: Damper,
@@ -314,8 +314,8 @@ impl Term for DamperStep {
         sink.add_vertex(self.damper.coordinate.vertices[0].0, &block);
     }
 
-    /// The work on the free vertices: by the force at the end, or of a two-step formula by the mean of those at
-    /// both ends.
+    /// The work on the free vertices: by the force at the end, or of a two-step formula by the mean of those
+    /// at both ends.
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let start = step.state;
         let mut force = vec![0.0; at.x.len()];

@@ -123,8 +123,8 @@ fn corners(surface: &Sheet) -> impl Iterator<Item = [Vector3<f64>; 3]> {
     faces.map(|face| face.map(|v| Vector3::from(surface.position(v))))
 }
 
-/// How often faces enclose a point that is not on them: the sum of the solid angles at which they are seen (van
-/// Oosterom and Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30, 1983).
+/// How often faces enclose a point that is not on them: the sum of the solid angles at which they are seen
+/// (van Oosterom and Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30, 1983).
 fn winding(faces: impl Iterator<Item = [Vector3<f64>; 3]>, point: &Vector3<f64>) -> i64 {
     let half_angle = |corners: [Vector3<f64>; 3]| {
         let [a, b, c] = corners.map(|p| p - point);

@@ -1,7 +1,7 @@
 //! Times at which what is prescribed changes abruptly.
 
-/// Part of a step within which a break counts as one of its ends: the force that comes so much too early or too late
-/// gives a momentum far below the error of the step.
+/// Part of a step within which a break counts as one of its ends: the force that comes so much too early or
+/// too late gives a momentum far below the error of the step.
 const AT_AN_END: f64 = 1e-6;
 
 /// When what is prescribed changes abruptly.
@@ -25,8 +25,8 @@ impl Breaks {
         Self { times }
     }
 
-    /// Where what is left of a step of `h` seconds begins, from its first time to its last one, and the break within
-    /// it at which its first part ends.
+    /// Where what is left of a step of `h` seconds begins, from its first time to its last one, and the break
+    /// within it at which its first part ends.
     pub fn within(&self, [t, end]: [f64; 2], h: f64) -> (Start, Option<f64>) {
         let near = AT_AN_END * h;
         let first = self.times.partition_point(|b| *b < t - near);

@@ -6,13 +6,14 @@ use crate::{ModelError, SheetModel};
 use std::ops::Range;
 
 impl SheetModel {
-    /// Sets the rate `gamma` (1/s) of the velocity damping: a force `-gamma M v` on all vertices of sheets that are not
-    /// pinned, the paper's "we add this damping force to the velocity" (Sec. 6).
+    /// Sets the rate `gamma` (1/s) of the velocity damping: a force `-gamma M v` on all vertices of sheets
+    /// that are not pinned, the paper's "we add this damping force to the velocity" (Sec. 6).
     ///
-    /// Every method takes it exactly where nothing else acts, `v(t + h) = v(t) exp(-gamma h)`, and keeps its order
-    /// with it: backward differentiation formulas act on `v exp(gamma t)` (the integrating factor of J. D. Lawson,
-    /// SIAM J. Numer. Anal. 4, 1967), and energy-momentum and RATTLE stand between two halves of it (G. Strang, SIAM
-    /// J. Numer. Anal. 5, 1968). In a chart it follows each step as published, with an error of first order.
+    /// Every method takes it exactly where nothing else acts, `v(t + h) = v(t) exp(-gamma h)`, and keeps its
+    /// order with it: backward differentiation formulas act on `v exp(gamma t)` (the integrating factor of J.
+    /// D. Lawson, SIAM J. Numer. Anal. 4, 1967), and energy-momentum and RATTLE stand between two halves of
+    /// it (G. Strang, SIAM J. Numer. Anal. 5, 1968). In a chart it follows each step as published, with an
+    /// error of first order.
     ///
     /// # Errors
     /// [`ModelError::Damping`] if the rate is negative or not finite.
@@ -21,8 +22,8 @@ impl SheetModel {
         self.with_dampings([(all, rate)])
     }
 
-    /// As [`SheetModel::with_damping`], with a rate for each of several sheets, whose vertices these are; without
-    /// damping elsewhere.
+    /// As [`SheetModel::with_damping`], with a rate for each of several sheets, whose vertices these are;
+    /// without damping elsewhere.
     ///
     /// # Errors
     /// [`ModelError::Damping`] if a rate is negative or not finite.

@@ -12,8 +12,8 @@ pub struct ElasticDeformation {
     pub strain: Vec<f64>,
     /// Energy of stretching, with that of the barrier at the limit, joules.
     pub stretching: Vec<f64>,
-    /// The part of it that is in the slack of faces that bend, joules: a sheet that is pulled yields by it as its
-    /// material would not.
+    /// The part of it that is in the slack of faces that bend, joules: a sheet that is pulled yields by it as
+    /// its material would not.
     pub slack: Vec<f64>,
     /// Part of the area whose strain is beyond half of its limit, where the barrier acts, from 0 to 1.
     pub at_limit: f64,
@@ -37,7 +37,8 @@ impl ElasticDeformation {
         share(self.stretching.iter().sum(), self.bending.iter().sum())
     }
 
-    /// The part of the slack in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no energy.
+    /// The part of the slack in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no
+    /// energy.
     pub fn slack_share(&self) -> f64 {
         let slack: f64 = self.slack.iter().sum();
         let stretching: f64 = self.stretching.iter().sum();
@@ -59,9 +60,8 @@ fn share(energy: f64, others: f64) -> f64 {
 
 impl SheetModel {
     /// How an elastic sheet is deformed at a time `t` (seconds) and positions `x` (`3V`, metres) by what its
-    /// potentials remember; nothing for a sheet of rods. Bending is that of the potentials that know it by face
-    /// (`MaterialReport`), and has an angle if the sheet was told its plate
-    /// (`ElasticSheet::beside`).
+    /// potentials remember; nothing for a sheet of rods. Bending is that of the potentials that know it by
+    /// face (`MaterialReport`), and has an angle if the sheet was told its plate (`ElasticSheet::beside`).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.

@@ -145,8 +145,8 @@ pub struct GasState {
 }
 
 impl EnclosedGas {
-    /// Gas in closed faces. Their front has to be outside, or inside for all of them; `x` are the positions at
-    /// the start, `3V`, metres.
+    /// Gas in closed faces. Their front has to be outside, or inside for all of them; `x` are the positions
+    /// at the start, `3V`, metres.
     ///
     /// # Errors
     /// [`GasError`].

@@ -86,10 +86,10 @@ impl SheetModel {
         Some(angles)
     }
 
-    /// The bend of the faces beside each crease (length E, radians, positive for valleys), 0 at other edges, at
-    /// time `t` (seconds) and positions `x` (`3V`, metres); `None` where no crease is in a sheet that bends.
-    /// The fold angle of the two faces at a crease ([`isosheet_mesh::fold_angle`]) is the kink of the crease
-    /// and this bend (`CreaseSprings::bends_beside`).
+    /// The bend of the faces beside each crease (length E, radians, positive for valleys), 0 at other edges,
+    /// at time `t` (seconds) and positions `x` (`3V`, metres); `None` where no crease is in a sheet that
+    /// bends. The fold angle of the two faces at a crease ([`isosheet_mesh::fold_angle`]) is the kink of the
+    /// crease and this bend (`CreaseSprings::bends_beside`).
     pub fn bends_at_creases(&self, t: f64, x: &[f64], memories: &Memories) -> Option<Vec<f64>> {
         let all = self.reports(memories);
         let at = |memory| At::new(t, x).with_memory(memory);

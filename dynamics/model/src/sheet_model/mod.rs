@@ -51,8 +51,8 @@ pub enum Isometry {
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
 pub const PINNED: u32 = u32::MAX;
 
-/// Part of a step over which rates of change are differences: what is not linear over it, and the round-off of the
-/// energies over it, are as far below the error of the trapezoidal rule as 1e-4 and 1e-12.
+/// Part of a step over which rates of change are differences: what is not linear over it, and the round-off
+/// of the energies over it, are as far below the error of the trapezoidal rule as 1e-4 and 1e-12.
 const RATE_PART: f64 = 1.0 / 8192.0;
 
 /// A sheet as a mechanical system: rigid rods between point masses (or with a consistent mass
@@ -182,10 +182,11 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
-    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these sheets.
+    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these
+    /// sheets.
     ///
-    /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does this
-    /// and all else that a material needs; by hand:
+    /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does
+    /// this and all else that a material needs; by hand:
     ///
     /// ```
     /// use isosheet_materials::{ElasticSheet, PlateBending, PlateStiffness};
@@ -233,22 +234,24 @@ impl SheetModel {
         self
     }
 
-    /// Adds a force that BDF2 and implicit Euler take as a [term](crate::term::Term) of their objective, and other
-    /// methods as it is: one that is too stiff to be taken as it is expected at the end of a step, or has a barrier.
+    /// Adds a force that BDF2 and implicit Euler take as a [term](crate::term::Term) of their objective, and
+    /// other methods as it is: one that is too stiff to be taken as it is expected at the end of a step, or
+    /// has a barrier.
     #[must_use]
     pub fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
         self.implicit.push(Box::new(force));
         self
     }
 
-    /// Says when velocities or accelerations of prescribed motions, or forces, change abruptly (seconds, in any order;
-    /// what is not finite is left out), see `Profile::breaks`. Scenes do so for all their
+    /// Says when velocities or accelerations of prescribed motions, or forces, change abruptly (seconds, in
+    /// any order; what is not finite is left out), see `Profile::breaks`. Scenes do so for all their
     /// functions of time.
     ///
-    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and those that
-    /// look back begin anew: a formula of second order over a jump of the acceleration `a` leaves an error `h a / 2` in
-    /// the velocities. Of breaks that follow one another within a step the first one counts, since the steps do not
-    /// resolve the others: keyframes of a motion that was sampled as often cost nothing.
+    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and
+    /// those that look back begin anew: a formula of second order over a jump of the acceleration `a` leaves
+    /// an error `h a / 2` in the velocities. Of breaks that follow one another within a step the first one
+    /// counts, since the steps do not resolve the others: keyframes of a motion that was sampled as often
+    /// cost nothing.
     #[must_use]
     pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks = self.breaks.and(times);
@@ -270,9 +273,9 @@ impl SheetModel {
         self.implicit.iter().map(Box::as_ref)
     }
 
-    /// Says that the vertices from this one on are those of [rigid bodies](crate::RigidBody): neither the velocity
-    /// damping nor [air](crate::Air) that is added later acts on them, and their edges say nothing about the
-    /// lengths of the sheets.
+    /// Says that the vertices from this one on are those of [rigid bodies](crate::RigidBody): neither the
+    /// velocity damping nor [air](crate::Air) that is added later acts on them, and their edges say nothing
+    /// about the lengths of the sheets.
     ///
     /// # Panics
     /// If no vertex is before it.
@@ -308,7 +311,8 @@ impl SheetModel {
         &self.rod_edges
     }
 
-    /// Largest strain of an edge at positions `x` (`3V`, metres); edges of surfaces in prescribed motion have none.
+    /// Largest strain of an edge at positions `x` (`3V`, metres); edges of surfaces in prescribed motion have
+    /// none.
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
@@ -422,12 +426,12 @@ impl SheetModel {
         self.potentials().any(|p| p.is_driven())
     }
 
-    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`, joules: the
-    /// integral of `dV/dt` at fixed positions by the trapezoidal rule.
+    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`,
+    /// joules: the integral of `dV/dt` at fixed positions by the trapezoidal rule.
     ///
-    /// The rates are differences over a small part of the step, that of the start forwards and that of the end
-    /// backwards, since functions of time may break at its ends. (Differences over the whole step at positions of one
-    /// of its ends would bend and yield as nothing does.)
+    /// The rates are differences over a small part of the step, that of the start forwards and that of the
+    /// end backwards, since functions of time may break at its ends. (Differences over the whole step at
+    /// positions of one of its ends would bend and yield as nothing does.)
     pub fn potential_work(
         &self,
         memories: &Memories,
@@ -488,8 +492,8 @@ impl SheetModel {
         }
     }
 
-    /// Adds the non-conservative forces that damped steps take as they are expected at their end, at pinned vertices
-    /// too.
+    /// Adds the non-conservative forces that damped steps take as they are expected at their end, at pinned
+    /// vertices too.
     pub fn add_explicit_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for force in &self.forces {
             force.add_force(t, x, v, f);

@@ -34,8 +34,8 @@ struct Hinge {
 }
 
 impl LoadedFaces {
-    /// The volume that closed faces enclose at positions `x` (`3V`, metres), cubic metres; negative where their front
-    /// is inside.
+    /// The volume that closed faces enclose at positions `x` (`3V`, metres), cubic metres; negative where
+    /// their front is inside.
     ///
     /// # Panics
     /// If `x` is shorter than the mesh that the faces are of.

@@ -28,9 +28,9 @@ use rand_chacha::ChaCha8Rng;
 /// above the start of its step by so many times the round-off of both.
 pub(super) const OPERATIONS: f64 = 8.0;
 
-/// Penalty of vertex constraints that are solved for, relative to the stiffness of masses and potentials at their
-/// vertices: a solution of the linear system leaves a millionth of an error, and round-off that is as far below the
-/// stiffness along the surface.
+/// Penalty of vertex constraints that are solved for, relative to the stiffness of masses and potentials at
+/// their vertices: a solution of the linear system leaves a millionth of an error, and round-off that is as
+/// far below the stiffness along the surface.
 const SUPPORT_STIFFNESS: f64 = 1e6;
 
 /// The augmented Lagrangian at an iterate,
@@ -318,7 +318,8 @@ impl Lagrangian {
         })
     }
 
-    /// Refuses potentials whose Hessians cannot be used at the iterate, though their energies are finite there.
+    /// Refuses potentials whose Hessians cannot be used at the iterate, though their energies are finite
+    /// there.
     ///
     /// # Errors
     /// [`StepError::Potential`].

@@ -492,7 +492,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         self.work.restore(self.problem, to, self.effort) <= to.strain
     }
 
-    /// Size of decreases that are noise of the lengths, besides round-off: a part of the energy `tolerance * sum
+    /// Size of decreases that are noise of the lengths, besides round-off: a part of the energy
+    /// `tolerance * sum
     /// |L| l^2` that the tolerance of the lengths leaves open, whose errors have different signs. Where there
     /// are finite multipliers the iteration has converged after some iterations, and small motions of taut
     /// sheets are below that size; where there are none, the last decreases fall as the inverse of the number
@@ -631,9 +632,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         Ok(false)
     }
 
-    /// Whether round after round has left most of the strain, and its lengths could not be restored: multipliers
-    /// that exist gain a digit in each round, and where rods depend on each other there are none. (A sheet that
-    /// jams took fifty thousand factorisations for a step of eighty rounds.)
+    /// Whether round after round has left most of the strain, and its lengths could not be restored:
+    /// multipliers that exist gain a digit in each round, and where rods depend on each other there are none.
+    /// (A sheet that jams took fifty thousand factorisations for a step of eighty rounds.)
     fn has_stalled(&mut self, strain: f64) -> bool {
         let tuning = &self.work.tuning;
         self.stalled = match strain > tuning.slow * self.unrestored {

@@ -6,8 +6,8 @@ use crate::{SheetModel, State};
 use isosheet_materials::potential::Memories;
 use isosheet_model::term::{Iterate, StepStart};
 
-/// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept at
-/// the end of the step.
+/// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept
+/// at the end of the step.
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,

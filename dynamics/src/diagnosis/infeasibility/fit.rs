@@ -177,8 +177,8 @@ impl<'a> Fit<'a> {
         excess.worst(At::new(self.t, &self.x))
     }
 
-    /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the rods of
-    /// a sheet.
+    /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the
+    /// rods of a sheet.
     pub(super) fn strain_limit(&self) -> Option<f64> {
         let worst = self.worst()?;
         let is_of_rods =

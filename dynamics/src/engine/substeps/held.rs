@@ -7,8 +7,9 @@ use crate::{SheetModel, SimulationError};
 use isosheet_model::immobile_vertices;
 
 impl Engine {
-    /// From the present state on with a model of the same sheet that is held otherwise. Pinned vertices take the
-    /// velocities of their motions over `span` seconds, and a method of two steps begins anew, as at a start.
+    /// From the present state on with a model of the same sheet that is held otherwise. Pinned vertices take
+    /// the velocities of their motions over `span` seconds, and a method of two steps begins anew, as at a
+    /// start.
     pub(crate) fn held_by(
         &self,
         mut model: SheetModel,

@@ -50,8 +50,8 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves `(M + E) x = b` with `M`, not less than `M + E`, which `solve` applies inversely, and the difference
-    /// `E` that the far couplings make.
+    /// Solves `(M + E) x = b` with `M`, not less than `M + E`, which `solve` applies inversely, and the
+    /// difference `E` that the far couplings make.
     ///
     /// The iteration starts at `x = M^-1 b`, which is exact where `E` does not matter, as along stiff rods:
     /// the residual is `-E x`, and what is measured from there on is the error in soft directions. Since

@@ -3,9 +3,10 @@ use super::*;
 use isosheet_mesh::generate::Diagonals;
 use nalgebra::Vector3;
 
-/// Root of the mean square over the faces of the relative errors of the curvature and of the sines of the angles to the
-/// exact rulings, of faces that are not at the rim. `map` takes a point of the flat sheet to space with its ruling
-/// and its curvature, and `side` is that of the square sheet, whose lower left corner is at `corner`.
+/// Root of the mean square over the faces of the relative errors of the curvature and of the sines of the
+/// angles to the exact rulings, of faces that are not at the rim. `map` takes a point of the flat sheet to
+/// space with its ruling and its curvature, and `side` is that of the square sheet, whose lower left corner
+/// is at `corner`.
 fn errors(
     cells: usize,
     corner: [f64; 2],
@@ -41,9 +42,10 @@ fn errors(
     sums.map(|s: f64| (s / count).sqrt())
 }
 
-/// Errors of the meshes of 8, 16 and 32 cells go down in proportion to the cells at least. Of the finest one the
-/// error of the curvature is less than `(k h)^2` with the curvature `k` and the longest edges `h`, and the angle of the
-/// rulings, which lie in planes of faces that are tilted against the surface, less than `k h / 2`.
+/// Errors of the meshes of 8, 16 and 32 cells go down in proportion to the cells at least. Of the finest one
+/// the error of the curvature is less than `(k h)^2` with the curvature `k` and the longest edges `h`, and
+/// the angle of the rulings, which lie in planes of faces that are tilted against the surface, less than
+/// `k h / 2`.
 fn check(
     what: &str,
     curvature: f64,
@@ -79,8 +81,8 @@ fn the_ruling_of_a_cylinder_is_its_axis() {
     }
 }
 
-/// Rolled to a cone of the half angle `b`: rulings pass through the apex, and the curvature at the distance `r` from it
-/// is `cot b / r`.
+/// Rolled to a cone of the half angle `b`: rulings pass through the apex, and the curvature at the distance
+/// `r` from it is `cot b / r`.
 #[test]
 fn the_rulings_of_a_cone_pass_through_its_apex() {
     let (half_angle, height) = (0.7_f64, 1.0);
@@ -140,8 +142,8 @@ fn what_is_not_developable_or_not_bent_has_no_ruling() {
     assert!(!inside.is_empty() && inside.iter().all(|f| found[*f].is_none()));
 }
 
-/// A sheet that is bent to both sides of a crease is not flat beside it: a roof of two quarter cylinders has the
-/// curvature of both up to the crease, which a fit across would not.
+/// A sheet that is bent to both sides of a crease is not flat beside it: a roof of two quarter cylinders has
+/// the curvature of both up to the crease, which a fit across would not.
 #[test]
 fn the_curvature_ends_at_creases() {
     let flat = strip([16, 8], [2.0, 1.0], Diagonals::Rising, 0.2, 1.0);
