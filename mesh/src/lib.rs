@@ -46,7 +46,7 @@ mod sheet;
 #[cfg(test)]
 mod tests;
 mod topology;
-mod vec3;
+pub mod vec3;
 pub mod wording;
 
 pub use advice::Advice;

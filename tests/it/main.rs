@@ -25,7 +25,6 @@ mod invariance;
 mod load_orders;
 mod loads;
 mod locking;
-mod materials;
 mod modules;
 mod orders;
 mod origami;

@@ -14,7 +14,6 @@ mod fig07;
 mod fig08;
 mod fig09;
 mod folds;
-mod lasting;
 mod performance;
 mod show;
 mod sketch;
@@ -23,7 +22,7 @@ mod stamping;
 mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
-use crate::report::{Effort, Picture, Table, extremes};
+use crate::report::{Effort, Picture, Table};
 use crate::runs::{RunSummary, about_ensembles};
 use crate::store::{Files, Store};
 use anyhow::Result;
@@ -177,12 +176,6 @@ fn course(run: &RunSummary) -> Vec<FigureRow> {
         "membrane stiffness" => run.stiffness().unwrap_or_else(rods),
         "smallest gap" => gap(course.gap),
     }
-}
-
-/// The highest point of positions above the lowest, metres.
-fn height(x: &[f64]) -> f64 {
-    let heights = x.iter().skip(2).step_by(3).copied();
-    extremes(heights).map_or(0.0, |[low, high]| high - low)
 }
 
 /// A smallest gap in words.

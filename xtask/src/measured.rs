@@ -7,7 +7,7 @@
 use crate::failure::ReportError;
 use crate::progress;
 use crate::report::excerpt::{self, Measurement, comment};
-use crate::sources::{REPORTS, fingerprint, root};
+use crate::sources::{REPORTS, changed, root};
 use anyhow::{Context, Result};
 use clap::Args;
 use isosheet_files::write_atomically;
@@ -25,7 +25,7 @@ pub(crate) struct MeasuredArgs {
     /// Copy nothing, and list the parts whose sources have changed since they were measured
     ///
     /// The exit code is 0 if there are none. Sources are the code of the solver and of the report without
-    /// comments and tests, and the scenes of the report.
+    /// comments and files of tests, and the scenes of the report.
     #[arg(long, conflicts_with = "from")]
     check: bool,
 }
@@ -66,12 +66,16 @@ pub(crate) fn run(args: &MeasuredArgs) -> Result<()> {
 fn check(book: &Path) -> Result<()> {
     let mut names = Vec::new();
     for report in REPORTS.map(|report| report.name) {
-        let now = fingerprint(&root(), report)?;
-        let all = measurements(&of_report(book, report))?;
-        for old in all.iter().filter(|measurement| measurement.sources != now) {
+        for old in measurements(&of_report(book, report))? {
+            let files = changed(&root(), report, old.commit());
+            let what = match &files {
+                Ok(files) if files.is_empty() => continue,
+                Ok(files) => files.join(", "),
+                Err(error) => error.to_string(),
+            };
             let parts: Vec<&str> = old.parts.iter().map(|part| part.name.as_str()).collect();
             println!(
-                "{report}: {}\n  {}",
+                "{report}: {}\n  {}\n  {what}",
                 parts.join(", "),
                 old.origin.replace('\n', " ")
             );
@@ -176,7 +180,6 @@ mod tests {
     fn blocks_name_parts_and_origins_of_parts() {
         let book = tempfile::tempdir().unwrap();
         let of = |name: &str| Measurement {
-            sources: "1f".to_owned(),
             origin: format!("Measured with {name}."),
             parts: vec![excerpt::Part::text(name, format!("the {name}"))],
         };
@@ -228,12 +231,12 @@ mod tests {
         for report in REPORTS.map(|report| report.name) {
             let all = measurements(&of_report(&book(), report)).unwrap();
             assert!(!all.is_empty(), "{report}");
-            for Measurement {
-                origin, sources, ..
-            } in all
-            {
-                let is_named = origin.contains(" commit ") && origin.contains(report);
-                assert!(is_named && !sources.is_empty(), "{origin}");
+            for measurement in all {
+                let is_named = measurement.origin.contains(report);
+                assert!(
+                    is_named && !measurement.commit().is_empty(),
+                    "{measurement:?}"
+                );
             }
             assert!(
                 contents.contains(&format!("(measured/{report}.md)")),

@@ -4,6 +4,7 @@ use crate::failure::ReportError;
 use crate::{interrupt, progress};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use std::collections::BTreeSet;
 use std::fs;
 use std::num::{NonZeroU32, NonZeroU64};
 use std::path::Path;
@@ -62,125 +63,58 @@ pub(crate) fn run(args: &SoakArgs) -> Result<()> {
     Ok(())
 }
 
-/// The names of the tests of the workspace that draw random cases by `isosheet_random`.
-fn random_tests(root: &Path) -> Result<Vec<String>> {
-    let mut names = Vec::new();
+/// The names of the tests in files that draw random cases by `isosheet_random`.
+fn random_tests(root: &Path) -> Result<BTreeSet<String>> {
+    let mut names = BTreeSet::new();
     for folder in ["mesh", "coords", "dynamics", "collide", "io", "tests"] {
-        add_tests_below(&root.join(folder), &mut names)?;
+        for_each_file(&root.join(folder), &mut |_, text| {
+            if text.contains("isosheet_random::") {
+                let tests = text.split("#[test]").skip(1);
+                let name =
+                    |test: &str| Some(test.split_once("fn ")?.1.split_once('(')?.0.to_owned());
+                names.extend(tests.filter_map(name));
+            }
+        })?;
     }
-    names.sort();
-    names.dedup();
     Ok(names)
 }
 
-fn add_tests_below(folder: &Path, names: &mut Vec<String>) -> Result<()> {
+/// Visits the files of Rust in and beneath a folder.
+fn for_each_file(folder: &Path, visit: &mut impl FnMut(&Path, &str)) -> Result<()> {
     let name = || format!("cannot read {}", folder.display());
     for entry in fs::read_dir(folder).with_context(name)? {
         let path = entry?.path();
         if path.is_dir() {
-            add_tests_below(&path, names)?;
+            for_each_file(&path, visit)?;
         } else if path.extension().is_some_and(|extension| extension == "rs") {
-            add_tests(&fs::read_to_string(&path).with_context(name)?, names);
+            visit(&path, &fs::read_to_string(&path).with_context(name)?);
         }
     }
     Ok(())
-}
-
-/// Adds the functions with the attribute `test` that name `isosheet_random` in their bodies, or stand in a block
-/// of `proptest!` that names it: both end where a line begins with a brace that closes a block of the same
-/// indentation.
-fn add_tests(text: &str, names: &mut Vec<String>) {
-    let indentation = |line: &str| line.len() - line.trim_start().len();
-    // The indentation of the block of `proptest!`, and the test with that of its function.
-    let (mut block, mut is_test, mut test) = (None, false, None::<(String, usize)>);
-    for line in text.lines() {
-        let (code, indent) = (line.trim(), indentation(line));
-        if code.starts_with("proptest! {") {
-            block = Some(indent);
-        } else if code == "#[test]" {
-            is_test = true;
-        } else if let Some(rest) = code.strip_prefix("fn ").filter(|_| is_test) {
-            let name = rest.split('(').next().unwrap_or_default();
-            (is_test, test) = (false, Some((name.to_owned(), indent)));
-        }
-        let is_random = block.is_some() || code.contains("isosheet_random::");
-        if let Some((name, _)) = test.take_if(|_| is_random) {
-            names.push(name);
-        }
-        if code == "}" {
-            block = block.filter(|of| *of != indent);
-            test = test.filter(|(_, of)| *of != indent);
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn random_tests_are_found_by_what_they_name() {
-        let text = "
-#[test]
-fn always() {
-    assert!(true);
-}
-
-#[test]
-fn by_a_runner() {
-    run(isosheet_random::cases(10));
-}
-
-fn helper() {
-    isosheet_random::seed();
-}
-
-mod tests {
-    proptest! {
-        #![proptest_config(isosheet_random::cases(24))]
-        /// Says something.
-        #[test]
-        fn by_proptest(x in 0..1) {
-            prop_assert!(x == 0);
-        }
-    }
-
-    #[test]
-    fn at_last() {}
-}";
-        let mut names = Vec::new();
-        add_tests(text, &mut names);
-        assert_eq!(names, ["by_a_runner", "by_proptest"]);
-    }
-
-    /// Every test of proptest draws its cases by `isosheet_random`.
+    /// Every test of proptest draws its cases by `isosheet_random`, so that its seeds are changed.
     #[test]
     fn no_test_draws_seeds_by_itself() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let names = random_tests(&root).unwrap();
-        assert!(names.len() > 40, "{}", names.len());
-        let mut without = Vec::new();
+        assert!(random_tests(&root).unwrap().len() > 40);
         for folder in ["mesh", "coords", "dynamics", "collide", "io", "tests"] {
-            find_own_seeds(&root.join(folder), &mut without);
-        }
-        assert!(without.is_empty(), "{without:?}");
-    }
-
-    /// The files below a folder with a `proptest!` of another configuration.
-    fn find_own_seeds(folder: &Path, found: &mut Vec<String>) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                find_own_seeds(&path, found);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let text = fs::read_to_string(&path).unwrap();
+            let check = &mut |path: &Path, text: &str| {
                 let count = |what: &str| text.matches(what).count();
-                if count("proptest! {") != count("#![proptest_config(isosheet_random::cases(")
-                    || text.contains("TestRunner::") && !text.contains("isosheet_random::")
-                {
-                    found.push(path.display().to_string());
-                }
-            }
+                let configured = count("#![proptest_config(isosheet_random::cases(");
+                let is_random = text.contains("isosheet_random::");
+                assert_eq!(count("proptest! {"), configured, "{}", path.display());
+                assert!(
+                    is_random || !text.contains("TestRunner::"),
+                    "{}",
+                    path.display()
+                );
+            };
+            for_each_file(&root.join(folder), check).unwrap();
         }
     }
 }

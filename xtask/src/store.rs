@@ -11,7 +11,7 @@ use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
 use crate::report::Effort;
-use crate::sources::Origin;
+use crate::sources::commit;
 use anyhow::{Context, Result};
 use isosheet_files::{FileError, read_json, write_atomically, write_json};
 use isosheet_runs::{RunError, holds_other_files, remove_unfinished};
@@ -90,8 +90,8 @@ pub(crate) struct Store {
     root: PathBuf,
     pub(crate) effort: Effort,
     program: u64,
-    /// The working copy when the folder was opened, for results that the book shows.
-    origin: Option<Origin>,
+    /// The commit when the folder was opened, of results that the book shows.
+    commit: Option<String>,
     remake: Remake,
     /// Units that this process has made.
     made: Mutex<HashSet<String>>,
@@ -124,7 +124,7 @@ impl Files<'_> {
 }
 
 impl Store {
-    /// As [`Store::open`], for results that the book shows unless they are quick: it knows the working copy.
+    /// As [`Store::open`], for results that the book shows unless they are quick: it knows the commit.
     pub(crate) fn of_report(
         root: &Path,
         report: &str,
@@ -133,7 +133,7 @@ impl Store {
     ) -> Result<Self> {
         let mut store = Self::open(root, report, effort, remake)?;
         if effort != Effort::Quick {
-            store.origin = Some(Origin::here(report)?);
+            store.commit = Some(commit());
         }
         Ok(store)
     }
@@ -147,7 +147,7 @@ impl Store {
             root: root.to_owned(),
             effort,
             program: fingerprint()?,
-            origin: None,
+            commit: None,
             remake,
             made: Mutex::default(),
             _lock: lock,
@@ -176,9 +176,9 @@ impl Store {
         Ok(store)
     }
 
-    /// The working copy that results are of, for those that the book shows.
-    pub(crate) fn origin(&self) -> Option<&Origin> {
-        self.origin.as_ref()
+    /// The commit that results are of, if the book shows them.
+    pub(crate) fn commit(&self) -> Option<&str> {
+        self.commit.as_deref()
     }
 
     /// A file of [`RECORDS`].

@@ -14,47 +14,6 @@ fn distance_rate(body: &Obstacle, t: f64, p: &Vector3<f64>) -> f64 {
     -d.normal.dot(&body.velocity(t, &d.closest(p)))
 }
 
-fn shapes() -> impl Strategy<Value = Shape> {
-    (0..5_u8, proptest::array::uniform3(0.2..1.0_f64)).prop_map(|(kind, [a, b, c])| match kind {
-        0 => Shape::HalfSpace,
-        1 => Shape::Cuboid { half: [a, b, c] },
-        2 => Shape::Sphere { radius: a },
-        3 => Shape::Cylinder {
-            radius: a,
-            half_height: b,
-        },
-        _ => Shape::Capsule {
-            radius: a,
-            half_length: b,
-        },
-    })
-}
-
-fn scaled(shape: &Shape, s: f64) -> Shape {
-    match *shape {
-        Shape::HalfSpace => Shape::HalfSpace,
-        Shape::Cuboid { half } => Shape::Cuboid {
-            half: half.map(|h| s * h),
-        },
-        Shape::Sphere { radius } => Shape::Sphere { radius: s * radius },
-        Shape::Cylinder {
-            radius,
-            half_height,
-        } => Shape::Cylinder {
-            radius: s * radius,
-            half_height: s * half_height,
-        },
-        Shape::Capsule {
-            radius,
-            half_length,
-        } => Shape::Capsule {
-            radius: s * radius,
-            half_length: s * half_length,
-        },
-        Shape::Surface(_) | Shape::Other(_) => unreachable!("only analytic shapes are generated"),
-    }
-}
-
 fn moving(shape: Shape, pose: &[f64; 6], end: &[f64; 6]) -> Obstacle {
     let key = |t, p: &[f64; 6]| Keyframe {
         t,
@@ -79,10 +38,15 @@ proptest! {
     #![proptest_config(isosheet_random::cases(1000))]
 
     #[test]
-    fn derivatives_match_differences(shape in shapes(), size in sizes(), p in proptest::array::uniform3(-1.0..1.0_f64), a in pose(), t in 0.0..1.0_f64) {
+    fn derivatives_match_differences(is_round: bool, lengths in proptest::array::uniform3(0.2..1.0_f64), size in sizes(), p in proptest::array::uniform3(-1.0..1.0_f64), a in pose(), t in 0.0..1.0_f64) {
         let mut place = a;
         place[..3].iter_mut().for_each(|c| *c *= size);
-        let body = moving(scaled(&shape, size), &place, &[0.0; 6]);
+        let half = lengths.map(|length| size * length);
+        let shape = match is_round {
+            true => Shape::Capsule { radius: half[0], half_length: half[1] },
+            false => Shape::Cuboid { half },
+        };
+        let body = moving(shape, &place, &[0.0; 6]);
         let centre = body.motion().pose(t).translation.vector;
         let p = centre + 2.0 * size * Vector3::from(p);
         let at = body.signed_distance(t, &p);

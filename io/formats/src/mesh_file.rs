@@ -35,7 +35,6 @@ pub use repair::Repair;
 
 pub(super) use fold::LineRecord;
 pub(super) use plane::{Point, distance, twice_area};
-pub(super) use polygon::{cross, sub};
 
 use error::Located;
 use isosheet_files::{DataError, input};

@@ -1,6 +1,6 @@
 //! Where the viewer is.
 
-use super::vector::{cross, dot, sub, unit};
+use isosheet_mesh::vec3::{cross, dot, sub, unit};
 
 /// A camera that looks at a target from a distance; z of the scene points upwards in the picture.
 #[derive(Clone, Copy, Debug)]
@@ -91,12 +91,8 @@ impl Camera {
 
     /// Places a point in the picture.
     pub(super) fn project(&self, p: &[f64; 3]) -> Projected {
-        let d = sub(p, &self.target);
-        let (x, y, z) = (
-            dot(&d, &self.right),
-            dot(&d, &self.up),
-            dot(&d, &self.toward),
-        );
+        let d = sub(p, self.target);
+        let (x, y, z) = (dot(d, self.right), dot(d, self.up), dot(d, self.toward));
         let away = (self.distance - z).max(self.nearest());
         let scale = self.distance / away;
         let s = scale / self.half_height;
@@ -129,7 +125,7 @@ impl Camera {
         let beyond = |direction: &[f64; 3], slope: f64| {
             let limit = margin * (1.0 + slope);
             let beyond = |p: &[f64; 3], side: f64| {
-                side * dot(&sub(p, &self.target), direction) - slope * self.away(p) > limit
+                side * dot(sub(p, self.target), direction) - slope * self.away(p) > limit
             };
             let all = |side: f64| corners.iter().all(|p| beyond(p, side));
             all(1.0) || all(-1.0)
@@ -163,17 +159,17 @@ impl Camera {
 
     /// How far a point is from the viewer in the direction of view, metres.
     fn away(&self, p: &[f64; 3]) -> f64 {
-        self.distance - dot(&sub(p, &self.target), &self.toward)
+        self.distance - dot(sub(p, self.target), self.toward)
     }
 
     /// The direction from a point to the viewer.
     pub(super) fn viewer(&self, p: &[f64; 3]) -> [f64; 3] {
-        unit(&sub(&self.eye(), p))
+        unit(sub(self.eye(), p))
     }
 
     /// A direction given in the picture: rightwards, upwards and towards the viewer.
     pub(super) fn direction(&self, d: [f64; 3]) -> [f64; 3] {
-        unit(&[0, 1, 2].map(|k| d[0] * self.right[k] + d[1] * self.up[k] + d[2] * self.toward[k]))
+        unit([0, 1, 2].map(|k| d[0] * self.right[k] + d[1] * self.up[k] + d[2] * self.toward[k]))
     }
 }
 
@@ -184,9 +180,9 @@ pub(super) fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
 
 /// Unit normal of a triangle.
 pub(super) fn normal(corners: &[[f64; 3]; 3]) -> [f64; 3] {
-    unit(&cross(
-        &sub(&corners[1], &corners[0]),
-        &sub(&corners[2], &corners[0]),
+    unit(cross(
+        sub(corners[1], corners[0]),
+        sub(corners[2], corners[0]),
     ))
 }
 

@@ -17,7 +17,6 @@ mod sheet;
 mod solid;
 mod text;
 mod ticks;
-mod vector;
 #[cfg(feature = "labels")]
 mod vector_drawing;
 

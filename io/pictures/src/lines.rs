@@ -4,7 +4,7 @@ use super::canvas::light;
 use super::raster::{Corner, Stroke};
 use super::sheet::{GRAIN, INK, Painter, SheetPicture};
 use super::solid::Triangles;
-use super::vector::axpy;
+use isosheet_mesh::vec3::axpy;
 use isosheet_mesh::{EdgeId, Topology, VertexId};
 use std::collections::HashSet;
 
@@ -139,7 +139,7 @@ impl Painter<'_> {
             if self.camera.is_behind(p) {
                 continue;
             }
-            let raised = axpy(p, 3.0 * LIFT * self.scale, &self.camera.viewer(p));
+            let raised = axpy(p, 3.0 * LIFT * self.scale, self.camera.viewer(p));
             for (width, colour) in [(widest, INK), (widest * 2.0 / 3.0, colour)] {
                 let [x, y, _] = self.place(p);
                 let end = Corner {

@@ -3,7 +3,7 @@
 use super::camera::{centre, normal};
 use super::pieces::Piece;
 use super::solid::Triangles;
-use super::vector::{axpy, cross, dot, sub, unit};
+use isosheet_mesh::vec3::{axpy, cross, dot, sub, unit};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -76,12 +76,12 @@ impl Occlusion {
         let (spots, of_corner) = spots(pieces, scene);
         let directions = spiral();
         let one = |(k, spot): (usize, &Spot)| {
-            let up = unit(&spot.normal);
+            let up = unit(spot.normal);
             let corner = scene.x[spot.vertex];
             let is_crease = shares_vertex(&spots, k);
             let centroid = spot.centroid.map(|c| c / spot.corners);
             let inset = if is_crease { INSET } else { 0.0 };
-            let from = axpy(&corner, inset, &sub(&centroid, &corner));
+            let from = axpy(corner, inset, sub(centroid, corner));
             Surroundings {
                 open: self.around(&from, &up, &directions, &spot.faces),
                 normal: up,
@@ -108,8 +108,8 @@ impl Occlusion {
         } else {
             [0.0, 1.0, 0.0]
         };
-        let right = unit(&cross(&aside, up));
-        let ahead = cross(up, &right);
+        let right = unit(cross(aside, up));
+        let ahead = cross(up, right);
         let seen = directions.iter().map(|d| {
             let along = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
             let ray = Ray::new((*from).into(), along.into());
@@ -155,7 +155,7 @@ fn spots(pieces: &[Piece], scene: &Triangles) -> (Vec<Spot>, Vec<[usize; 3]>) {
             let skin = scene.skin(piece.face);
             let n = skin.map_or(flat, |skin| skin.normal(&flat, &scene.x[vertex]));
             let centroid = centre(&points);
-            let group = (first..spots.len()).find(|&s| dot(&unit(&spots[s].normal), &n) > SMOOTH);
+            let group = (first..spots.len()).find(|&s| dot(unit(spots[s].normal), n) > SMOOTH);
             let group = group.unwrap_or_else(|| {
                 spots.push(Spot {
                     vertex,
@@ -167,8 +167,8 @@ fn spots(pieces: &[Piece], scene: &Triangles) -> (Vec<Spot>, Vec<[usize; 3]>) {
                 spots.len() - 1
             });
             let spot = &mut spots[group];
-            spot.normal = axpy(&spot.normal, 1.0, &n);
-            spot.centroid = axpy(&spot.centroid, 1.0, &centroid);
+            spot.normal = axpy(spot.normal, 1.0, n);
+            spot.centroid = axpy(spot.centroid, 1.0, centroid);
             spot.corners += 1.0;
             if !spot.faces.contains(&piece.face) {
                 spot.faces.push(piece.face);
@@ -279,8 +279,8 @@ mod tests {
             for ((corners, on_line), own) in around.iter().zip(shared).zip(expected) {
                 for (corner, tilt) in corners.iter().zip([on_line, on_line, own]) {
                     let normal = [-tilt.sin(), 0.0, tilt.cos()];
-                    let off = sub(&corner.normal, &normal);
-                    assert!(dot(&off, &off) < 1e-24, "{corner:?} {tilt}");
+                    let off = sub(corner.normal, normal);
+                    assert!(dot(off, off) < 1e-24, "{corner:?} {tilt}");
                 }
             }
         }

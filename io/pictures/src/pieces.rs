@@ -2,7 +2,7 @@
 
 use super::camera::{Camera, centre, normal};
 use super::solid::{Skin, Triangles};
-use super::vector::{dot, sub};
+use isosheet_mesh::vec3::{dot, sub};
 use std::collections::HashMap;
 
 /// Largest distance in the picture between a curved surface and the pieces that stand for it, pixels.
@@ -98,7 +98,7 @@ impl Cutter<'_> {
     fn seen(&self, piece: Piece, x: &[[f64; 3]], skin: Option<&Skin>) -> Option<Piece> {
         let points = piece.corners.map(|v| x[v]);
         let centre = centre(&points);
-        let back = dot(&normal(&points), &self.camera.viewer(&centre)) < 0.0;
+        let back = dot(normal(&points), self.camera.viewer(&centre)) < 0.0;
         let is_hidden = back && skin.is_some_and(Skin::hides_backs);
         (!is_hidden).then_some(Piece { back, ..piece })
     }
@@ -208,9 +208,9 @@ impl Cutter<'_> {
             .radius()
             .map_or(0.0, |r| longest(points, distance).1 / r);
         let turned = |p: &[f64; 3]| {
-            let (d, n) = (sub(&eye, p), skin.normal(&flat, p));
+            let (d, n) = (sub(eye, p), skin.normal(&flat, p));
             let room = distance(&eye, p) + skin.radius().unwrap_or(0.0);
-            turn < 1.0 && dot(&d, &n) < -turn * turn * room
+            turn < 1.0 && dot(d, n) < -turn * turn * room
         };
         skin.hides_backs() && points.iter().all(turned)
     }
@@ -259,17 +259,17 @@ fn longest(points: &[[f64; 3]; 3], measure: impl Fn(&[f64; 3], &[f64; 3]) -> f64
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     let d = sub(b, a);
-    dot(&d, &d).sqrt()
+    dot(d, d).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::solid::Solid;
-    use super::super::vector::cross;
     use super::*;
     use isosheet_collide::Obstacle;
     use isosheet_geometry::Shape;
     use isosheet_mesh::Topology;
+    use isosheet_mesh::vec3::cross;
     use nalgebra::Isometry3;
     use std::collections::BTreeMap;
 
@@ -295,11 +295,8 @@ mod tests {
     }
 
     fn area(corners: &[[f64; 3]; 3]) -> f64 {
-        let n = cross(
-            &sub(&corners[1], &corners[0]),
-            &sub(&corners[2], &corners[0]),
-        );
-        0.5 * dot(&n, &n).sqrt()
+        let n = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+        0.5 * dot(n, n).sqrt()
     }
 
     /// A box that is seen as a whole: its three visible sides are cut, covered once, and the pieces fit
@@ -327,8 +324,8 @@ mod tests {
             .map(|(side, _)| side);
         let rim: f64 = rim
             .map(|side| {
-                let d = sub(&scene.x[side[1]], &scene.x[side[0]]);
-                dot(&d, &d).sqrt()
+                let d = sub(scene.x[side[1]], scene.x[side[0]]);
+                dot(d, d).sqrt()
             })
             .sum();
         assert!(sides.values().all(|count| *count <= 2));

@@ -8,8 +8,8 @@ use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet};
 use super::solid::{Skin, Solid, Triangles};
-use super::vector::dot;
 use isosheet_files::DataError;
+use isosheet_mesh::vec3::dot;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
 
@@ -227,11 +227,11 @@ pub fn render_folded(
 /// The light on a point with the unit normal `n` towards the viewer: that of the surroundings, which are
 /// brighter above, and that of a key light at the upper left.
 pub(super) fn light_on(camera: &Camera, n: &[f64; 3], p: &[f64; 3]) -> [f64; 2] {
-    let facing = dot(n, &camera.viewer(p)).max(0.0);
+    let facing = dot(n, camera.viewer(p)).max(0.0);
     let key = camera.direction([-0.66, 0.62, 0.42]);
     [
         0.34 + 0.10 * n[2] + 0.10 * facing,
-        0.68 * dot(n, &key).max(0.0),
+        0.68 * dot(n, key).max(0.0),
     ]
 }
 

@@ -2,9 +2,9 @@
 
 use super::camera::normal;
 use super::error::PictureError;
-use super::vector::{axpy, dot, sub, unit};
 use isosheet_collide::Obstacle;
 use isosheet_geometry::{self as geometry, Shape, Triangles as Mesh};
+use isosheet_mesh::vec3::{axpy, dot, sub, unit};
 use isosheet_mesh::{Topology, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::collections::BTreeMap;
@@ -124,9 +124,9 @@ impl Solid {
         let mesh = self.form.mesh.as_ref().unwrap_or(&square);
         let mut points: Vec<[f64; 3]> = mesh.points.iter().map(place).collect();
         if let Skin::Ground { centre, .. } = skin {
-            let shift = sub(&centre, &place(&[0.0; 3]));
+            let shift = sub(centre, place(&[0.0; 3]));
             for p in &mut points {
-                *p = axpy(p, 1.0, &shift);
+                *p = axpy(*p, 1.0, shift);
             }
         }
         Shell {
@@ -168,7 +168,7 @@ fn ridges(mesh: &Mesh) -> Vec<[u32; 2]> {
 impl Skin {
     /// The point of the surface at a part of an edge, from `a`.
     pub(super) fn middle(&self, a: &[f64; 3], b: &[f64; 3], part: f64) -> [f64; 3] {
-        let middle = axpy(a, part, &sub(b, a));
+        let middle = axpy(a, part, sub(b, a));
         match self {
             Self::Round { ends, radius } | Self::Tube { ends, radius } if self.is_arc(a, b) => {
                 on(&nearest(ends, &middle), &middle, *radius)
@@ -183,8 +183,8 @@ impl Skin {
             Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => false,
             Self::Round { .. } => true,
             Self::Tube { ends, radius } => [a, b].into_iter().all(|p| {
-                let d = sub(p, &nearest(ends, p));
-                dot(&d, &d) > (1.0 - 1e-6) * radius * radius
+                let d = sub(p, nearest(ends, p));
+                dot(d, d) > (1.0 - 1e-6) * radius * radius
             }),
         }
     }
@@ -193,13 +193,13 @@ impl Skin {
     pub(super) fn distance(&self, p: &[f64; 3]) -> f64 {
         match self {
             Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => 0.0,
-            Self::Round { ends, radius } => length(&sub(p, &nearest(ends, p))) - radius,
+            Self::Round { ends, radius } => length(&sub(p, nearest(ends, p))) - radius,
             Self::Tube { ends, radius } => {
-                let axis = unit(&sub(&ends[1], &ends[0]));
-                let d = sub(p, &ends[0]);
-                let along = dot(&axis, &d);
-                let aside = length(&axpy(&d, -along, &axis)) - radius;
-                let beyond = (-along).max(along - length(&sub(&ends[1], &ends[0])));
+                let axis = unit(sub(ends[1], ends[0]));
+                let d = sub(p, ends[0]);
+                let along = dot(axis, d);
+                let aside = length(&axpy(d, -along, axis)) - radius;
+                let beyond = (-along).max(along - length(&sub(ends[1], ends[0])));
                 aside.hypot(beyond.max(0.0))
             }
         }
@@ -209,14 +209,14 @@ impl Skin {
     pub(super) fn normal(&self, flat: &[f64; 3], p: &[f64; 3]) -> [f64; 3] {
         match self {
             Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => *flat,
-            Self::Round { ends, .. } => unit(&sub(p, &nearest(ends, p))),
+            Self::Round { ends, .. } => unit(sub(p, nearest(ends, p))),
             Self::Tube { ends, .. } => {
-                let axis = unit(&sub(&ends[1], &ends[0]));
+                let axis = unit(sub(ends[1], ends[0]));
                 // Faces of the mantle are at right angles to those of the ends.
-                if dot(&axis, flat).abs() > 0.7 {
+                if dot(axis, flat).abs() > 0.7 {
                     *flat
                 } else {
-                    unit(&sub(p, &nearest(ends, p)))
+                    unit(sub(p, nearest(ends, p)))
                 }
             }
         }
@@ -254,7 +254,7 @@ impl Skin {
             Self::Ground { centre, radius } | Self::Shadow { centre, radius } => {
                 let d = sub(p, centre);
                 // Full out to 0.35 of the radius, then fading smoothly.
-                let s = ((1.0 - dot(&d, &d).sqrt() / radius) / 0.65).clamp(0.0, 1.0);
+                let s = ((1.0 - dot(d, d).sqrt() / radius) / 0.65).clamp(0.0, 1.0);
                 s * s * (3.0 - 2.0 * s)
             }
             _ => 1.0,
@@ -268,17 +268,17 @@ fn length(a: &[f64; 3]) -> f64 {
 
 /// The point at a distance from `centre` in the direction of `p`.
 fn on(centre: &[f64; 3], p: &[f64; 3], distance: f64) -> [f64; 3] {
-    axpy(centre, distance, &unit(&sub(p, centre)))
+    axpy(centre, distance, unit(sub(p, centre)))
 }
 
 /// The point of a segment that is nearest to `p`.
 fn nearest([a, b]: &[[f64; 3]; 2], p: &[f64; 3]) -> [f64; 3] {
     let d = sub(b, a);
-    let square = dot(&d, &d);
+    let square = dot(d, d);
     if square == 0.0 {
         return *a;
     }
-    axpy(a, (dot(&sub(p, a), &d) / square).clamp(0.0, 1.0), &d)
+    axpy(a, (dot(sub(p, a), d) / square).clamp(0.0, 1.0), d)
 }
 
 /// The triangles of a sheet and of bodies, the sheet first.
@@ -334,7 +334,7 @@ impl Triangles {
         let centre = [centre[0], centre[1], height];
         let square = Mesh::square(reach);
         self.x
-            .extend(square.points.iter().map(|p| axpy(p, 1.0, &centre)));
+            .extend(square.points.iter().map(|p| axpy(p, 1.0, centre)));
         let faces = square.faces.iter();
         self.faces
             .extend(faces.map(|f| f.map(|v| first + v as usize)));
@@ -425,7 +425,7 @@ mod tests {
                         assert!(distance(p).abs() < 1e-12, "{shape:?}: {p:?}");
                     }
                     let n = shell.skin.normal(&flat, a);
-                    assert!(dot(&n, &flat) > 0.9, "{shape:?}: {n:?} and {flat:?}");
+                    assert!(dot(n, flat) > 0.9, "{shape:?}: {n:?} and {flat:?}");
                 }
             }
         }

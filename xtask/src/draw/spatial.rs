@@ -1,6 +1,7 @@
 //! Parallel projection of spatial scenes onto the drawing plane.
 
 use super::colour::{Colour, palette};
+use isosheet_mesh::vec3::{axpy, cross, dot, sub, unit};
 
 /// A parallel projection; z of the scene points upwards in the drawing.
 #[derive(Clone, Copy, Debug)]
@@ -9,35 +10,6 @@ pub(crate) struct Projection {
     up: [f64; 3],
     toward: [f64; 3],
     scale: f64,
-}
-
-pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(crate) fn sub(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn axpy(a: &[f64; 3], s: f64, b: &[f64; 3]) -> [f64; 3] {
-    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-pub(crate) fn norm(a: &[f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-pub(crate) fn unit(a: &[f64; 3]) -> [f64; 3] {
-    let l = norm(a);
-    if l > 0.0 { a.map(|c| c / l) } else { *a }
 }
 
 impl Projection {
@@ -57,8 +29,8 @@ impl Projection {
     /// Place in the drawing, points.
     pub(crate) fn project(&self, p: &[f64; 3]) -> [f64; 2] {
         [
-            self.scale * dot(&self.right, p),
-            self.scale * dot(&self.up, p),
+            self.scale * dot(self.right, p),
+            self.scale * dot(self.up, p),
         ]
     }
 
@@ -69,19 +41,19 @@ impl Projection {
 
     /// How near to the viewer a point is, metres.
     pub(crate) fn nearness(&self, p: &[f64; 3]) -> f64 {
-        dot(&self.toward, p)
+        dot(self.toward, p)
     }
 
     /// A colour shaded for a face with the given corners, alike from both sides.
     pub(crate) fn shade(&self, colour: Colour, corners: &[[f64; 3]; 3]) -> Colour {
-        let n = unit(&cross(
-            &sub(&corners[1], &corners[0]),
-            &sub(&corners[2], &corners[0]),
+        let n = unit(cross(
+            sub(corners[1], corners[0]),
+            sub(corners[2], corners[0]),
         ));
         // Light from the upper left behind the viewer.
         let light =
-            unit(&[0, 1, 2].map(|k| self.toward[k] + 0.5 * self.up[k] - 0.4 * self.right[k]));
-        let lit = dot(&n, &light).abs();
+            unit([0, 1, 2].map(|k| self.toward[k] + 0.5 * self.up[k] - 0.4 * self.right[k]));
+        let lit = dot(n, light).abs();
         colour
             .mix(palette::BLACK, 0.17 * (1.0 - lit))
             .mix(palette::WHITE, 0.12 * lit)
@@ -95,17 +67,17 @@ pub(crate) fn arc(centre: &[f64; 3], u: &[f64; 3], w: &[f64; 3], angle: f64) -> 
     (0..=n)
         .map(|k| {
             let (s, c) = (angle * k as f64 / n as f64).sin_cos();
-            axpy(&axpy(centre, c, u), s, w)
+            axpy(axpy(centre, c, u), s, w)
         })
         .collect()
 }
 
 /// The arc of the given radius about `apex` from the direction of `a` to that of `b`, by the smaller angle.
 pub(crate) fn angle_arc(apex: &[f64; 3], a: &[f64; 3], b: &[f64; 3], radius: f64) -> Vec<[f64; 3]> {
-    let u = unit(&sub(a, apex));
+    let u = unit(sub(a, apex));
     let d = sub(b, apex);
-    let w = unit(&axpy(&d, -dot(&d, &u), &u));
-    let angle = dot(&d, &w).atan2(dot(&d, &u));
+    let w = unit(axpy(d, -dot(d, u), u));
+    let angle = dot(d, w).atan2(dot(d, u));
     arc(apex, &u.map(|c| c * radius), &w.map(|c| c * radius), angle)
 }
 
@@ -119,7 +91,7 @@ mod tests {
         for (a, b) in [(&v.right, &v.up), (&v.up, &v.toward), (&v.toward, &v.right)] {
             assert!(dot(a, b).abs() < 1e-15);
         }
-        assert!(dot(&cross(&v.right, &v.up), &v.toward) > 0.999_999);
+        assert!(dot(cross(v.right, v.up), v.toward) > 0.999_999);
         let foot = v.project(&[0.0; 3]);
         let top = v.project(&[0.0, 0.0, 1.0]);
         assert!((top[0] - foot[0]).abs() < 1e-15 && top[1] > foot[1]);
@@ -131,8 +103,8 @@ mod tests {
         let points = angle_arc(&apex, &a, &b, 0.5);
         let (first, last) = (points[0], points[points.len() - 1]);
         assert!((first[0] - 1.5).abs() < 1e-12 && first[1].abs() < 1e-12);
-        let leg = unit(&sub(&b, &apex));
-        let end = sub(&last, &axpy(&apex, 0.5, &leg));
-        assert!(dot(&end, &end) < 1e-24);
+        let leg = unit(sub(b, apex));
+        let end = sub(last, axpy(apex, 0.5, leg));
+        assert!(dot(end, end) < 1e-24);
     }
 }

@@ -71,7 +71,11 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
         made.tables.push(of_ensembles(table));
     }
     if figure == 12 {
-        add_softness_and_marks(&mut made, &all, store)?;
+        let alt = "Total bending of falling sheets by mesh, of rods and of paper";
+        let plot = Charts::from(softness::plot(&all));
+        let plot = Picture::svg("fig12-softness", &plot, alt);
+        made.pictures.push(plot);
+        made.tables.push(softness::table(&all));
     }
     Ok(made)
 }
@@ -87,25 +91,8 @@ const HERE: [&str; 2] = [
      rods, which do not resist bending and crumple, then as an elastic sheet, which bends as office paper does and does not crumple.",
     "The crescent marks of which the paper speaks do not come of its model, in which nothing of a bend stays: \
      rods, which do not resist bending, crumple as they fall, in the median more on M² and M³ (which is not in the paper) than on coarser \
-     meshes, and an elastic sheet of office paper does not. In the last pictures office paper that yields (docs/materials.md) is crumpled between six plates, \
-     pressed to a height of 1.5 mm and let go: it stands on its marks, which take a small part of its area, at a height that grows with \
-     finer meshes and has not converged, while elastic paper lies flat again; energies of that squeeze are not to be relied on, as \
-     their balance lacks more than what yielding dissipates, and no less with steps a quarter as long (tables).",
+     meshes, and an elastic sheet of office paper does not. (Bends stay where a sheet yields, docs/materials.md.)",
 ];
-
-/// What Fig. 12 has beside Fig. 11: softness by mesh, and marks.
-fn add_softness_and_marks(made: &mut Made, all: &[Falls], store: &Store) -> Result<()> {
-    let alt = "Total bending of falling sheets by mesh, of rods and of paper";
-    let plot = Charts::from(softness::plot(all));
-    made.pictures
-        .push(Picture::svg("fig12-softness", &plot, alt));
-    made.tables.push(softness::table(all));
-    let lasting = super::lasting::make(store)?;
-    made.pictures.extend(lasting.pictures);
-    made.pages.extend(lasting.pages);
-    made.tables.extend(lasting.tables);
-    Ok(())
-}
 
 /// What was measured of the falls of one sheet.
 fn describe(falls: &Falls, sheet: usize) -> Result<Vec<FigureRow>> {

@@ -2,7 +2,6 @@
 
 use super::sketch::{Sketch, captioned};
 use super::{Made, Picture, Table, caption, style, svg};
-use crate::draw::spatial::{axpy, norm, sub};
 use crate::draw::{
     Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
 };
@@ -10,6 +9,7 @@ use crate::report::columns;
 use anyhow::{Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::generate::{anisotropic_grid, isotropic_square};
+use isosheet_mesh::vec3::{axpy, norm, sub};
 use isosheet_mesh::{CreasePattern, EdgeId, Sheet};
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -105,9 +105,9 @@ impl<'a> Folded<'a> {
         let turn = |sign: f64| EulerParameters::about(&[c, s, 0.0], 0.5 * sign * FOLD);
         let sides = [turn(-1.0), turn(1.0)];
         let place = |p: &[f64; 3]| {
-            let from = sub(p, &middle);
+            let from = sub(p, middle);
             let is_left = c * from[1] - s * from[0] > 0.0;
-            axpy(&middle, 1.0, &sides[usize::from(is_left)].rotate(&from))
+            axpy(middle, 1.0, sides[usize::from(is_left)].rotate(&from))
         };
         let x = sheet.positions().as_chunks::<3>().0.iter().map(place);
         Self {
@@ -121,7 +121,7 @@ impl<'a> Folded<'a> {
     /// The relative change of the length of an edge.
     fn strain(&self, e: EdgeId) -> f64 {
         let [a, b] = self.sheet.topology().edges()[e.index()];
-        let length = norm(&sub(&self.x[a.index()], &self.x[b.index()]));
+        let length = norm(sub(self.x[a.index()], self.x[b.index()]));
         (length / self.sheet.lengths()[e.index()] - 1.0).abs()
     }
 

@@ -2,11 +2,12 @@
 
 use super::sketch::{PLACED, Sketch, captioned};
 use super::{Made, measured, rows, style, svg};
-use crate::draw::spatial::{arc, axpy, dot, norm, sub, unit};
+use crate::draw::spatial::arc;
 use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::{place_f, place_g, place_h};
 use isosheet_coords::{Branch, EdgeFrame, EulerParameters, SphericalFrame};
+use isosheet_mesh::vec3::{axpy, dot, norm, sub, unit};
 
 /// Squared height that counts as zero; nothing here is near it.
 const TOLERANCE: f64 = 1e-12;
@@ -43,7 +44,7 @@ fn rule_h() -> Result<Drawing> {
     // Drawn with the axes of the frame as those of the picture.
     let at = |q| {
         let p = place_h(&v, 1.0, &frame, q);
-        frame.axes().map(|axis| dot(&axis, &p))
+        frame.axes().map(|axis| dot(axis, p))
     };
     let curve = |f: &dyn Fn(f64) -> [f64; 2]| -> Vec<[f64; 3]> {
         let steps = (0..=24).map(|k| f64::from(k) / 24.0);
@@ -77,13 +78,13 @@ fn rule_g() -> Result<Drawing> {
     let (a, b) = ([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]);
     let rest = [0.8, 0.45, 0.0];
     let frame = EdgeFrame::from_triangle([&a, &b, &rest])?;
-    let lengths = [&a, &b].map(|p| norm(&sub(&rest, p)));
+    let lengths = [&a, &b].map(|p| norm(sub(rest, p)));
     let at = |q: f64| place_g([&a, &b], lengths, &frame, q, TOLERANCE).map(|p| p.position);
-    let axis = unit(&sub(&b, &a));
+    let axis = unit(sub(b, a));
     let zero = at(0.0)?;
-    let foot = axpy(&a, dot(&sub(&zero, &a), &axis), &axis);
-    let radius = sub(&zero, &foot);
-    let turned = sub(&at(std::f64::consts::FRAC_PI_2)?, &foot);
+    let foot = axpy(a, dot(sub(zero, a), axis), axis);
+    let radius = sub(zero, foot);
+    let turned = sub(at(std::f64::consts::FRAC_PI_2)?, foot);
     let circle = arc(&foot, &radius, &turned, 2.3);
     d.line(&circle, Stroke::new(palette::PALE, 0.5));
     let shown = 1.15;
@@ -115,7 +116,7 @@ fn rule_f() -> Result<(Drawing, f64)> {
         images.push(place_f(neighbours, lengths, branch, TOLERANCE)?.position);
     }
     images.sort_by(|p, q| norm(p).total_cmp(&norm(q)));
-    let error = norm(&images[0]) / lengths[0];
+    let error = norm(images[0]) / lengths[0];
     ensure!(error < 1e-12, "f does not give the vertex back: {images:?}");
     for p in neighbours {
         d.line(&[images[1], *p], style::GHOST.dashed());

@@ -2,11 +2,12 @@
 
 use super::sketch::{PLACED, Sketch, captioned};
 use super::{Made, degrees, measured, rows, style, svg};
-use crate::draw::spatial::{angle_arc, arc, axpy, dot, norm, sub, unit};
+use crate::draw::spatial::{angle_arc, arc};
 use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, bail, ensure};
 use isosheet_coords::placement::{COLLINEAR, collinearity, place_f, place_on_line};
 use isosheet_coords::{Branch, EulerParameters, PlacementError};
+use isosheet_mesh::vec3::{axpy, dot, norm, sub, unit};
 use std::f64::consts::PI;
 
 const TOLERANCE: f64 = 1e-12;
@@ -16,7 +17,7 @@ const LINE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [0.0, 0.62, 0.0], [0.0, 1.3, 0.0]]
 const VERTEX: [f64; 3] = [0.75, 0.55, 0.0];
 
 pub(super) fn make() -> Result<Made> {
-    let lengths = LINE.map(|k| norm(&sub(&VERTEX, &k)));
+    let lengths = LINE.map(|k| norm(sub(VERTEX, k)));
     let near = [&LINE[0], &LINE[1], &LINE[2]];
     let sine = collinearity(near);
     match place_f(near, lengths, Branch::Above, TOLERANCE) {
@@ -28,7 +29,7 @@ pub(super) fn make() -> Result<Made> {
     let bent = [
         LINE[0],
         LINE[1],
-        axpy(&LINE[1], 0.68, &[0.0, bend.cos(), bend.sin()]),
+        axpy(LINE[1], 0.68, [0.0, bend.cos(), bend.sin()]),
     ];
     let regular = regular(&bent, lengths)?;
     let (degenerate, worst) = degenerate(lengths)?;
@@ -80,17 +81,17 @@ fn sketch() -> Sketch {
 /// is not used to find them.
 fn degenerate(lengths: [f64; 3]) -> Result<(Drawing, f64)> {
     let mut d = sketch();
-    let axis = unit(&sub(&LINE[2], &LINE[0]));
-    let foot = axpy(&LINE[0], dot(&sub(&VERTEX, &LINE[0]), &axis), &axis);
-    let radius = sub(&VERTEX, &foot);
+    let axis = unit(sub(LINE[2], LINE[0]));
+    let foot = axpy(LINE[0], dot(sub(VERTEX, LINE[0]), axis), axis);
+    let radius = sub(VERTEX, foot);
     let turned = |angle: f64| EulerParameters::about(&axis, -angle).rotate(&radius);
     let (known, outer) = ([&LINE[0], &LINE[2]], [lengths[0], lengths[2]]);
     let mut worst: f64 = 0.0;
     for turn in [0.0, 0.5, 1.0, 1.5, 2.0] {
         // The place that the function gives when the vertex was near the turned one before.
-        let before = axpy(&foot, 1.0, &turned(turn));
+        let before = axpy(foot, 1.0, turned(turn));
         let p = place_on_line(known, outer, &before, TOLERANCE)?.position;
-        worst = worst.max((norm(&sub(&p, &LINE[1])) - lengths[1]).abs() / lengths[1]);
+        worst = worst.max((norm(sub(p, LINE[1])) - lengths[1]).abs() / lengths[1]);
         if turn == 1.0 {
             d.blue_face([LINE[0], LINE[1], p], 0.92);
             d.blue_face([LINE[1], LINE[2], p], 0.92);

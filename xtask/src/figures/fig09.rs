@@ -2,11 +2,12 @@
 
 use super::sketch::{PLACED, Sketch};
 use super::{Made, degrees, measured, rows, style, svg};
-use crate::draw::spatial::{angle_arc, arc, axpy, cross, dot, norm, sub, unit};
+use crate::draw::spatial::{angle_arc, arc};
 use crate::draw::{Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::place_g;
 use isosheet_coords::{EdgeFrame, EulerParameters};
+use isosheet_mesh::vec3::{axpy, cross, dot, norm, sub, unit};
 
 /// The coordinate that is drawn, radians.
 const Q: f64 = 1.0;
@@ -16,21 +17,21 @@ pub(super) fn make() -> Result<Made> {
     let rest: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [0.95, 0.0, 0.0], [0.55, 0.72, 0.0]];
     // The known edge at time t: moved, and turned out of the plane.
     let first = [1.35, 0.35, 0.28];
-    let a0 = unit(&sub(&rest[1], &rest[0]));
-    let at = unit(&[0.78, 0.30, 0.58]);
-    let second = axpy(&first, norm(&sub(&rest[1], &rest[0])), &at);
-    let apex = sub(&rest[2], &rest[0]);
+    let a0 = unit(sub(rest[1], rest[0]));
+    let at = unit([0.78, 0.30, 0.58]);
+    let second = axpy(first, norm(sub(rest[1], rest[0])), at);
+    let apex = sub(rest[2], rest[0]);
     let align = EulerParameters::aligning(&a0, &at, &[0.0, 0.0, 1.0]);
     let aligned = add(&first, &align.rotate(&apex));
     let turn = EulerParameters::about(&at, Q);
     let turned = add(&first, &turn.rotate(&align.rotate(&apex)));
     // The library's g gives the same place.
     let frame = EdgeFrame::from_triangle([&rest[0], &rest[1], &rest[2]])?;
-    let lengths = [norm(&apex), norm(&sub(&rest[2], &rest[1]))];
+    let lengths = [norm(apex), norm(sub(rest[2], rest[1]))];
     let g = place_g([&first, &second], lengths, &frame, Q, 1e-12)?.position;
-    let error = norm(&sub(&g, &turned)) / lengths[0];
+    let error = norm(sub(g, turned)) / lengths[0];
     ensure!(error < 1e-12, "g differs from the construction by {error}");
-    let theta = norm(&cross(&a0, &at)).atan2(dot(&a0, &at));
+    let theta = norm(cross(a0, at)).atan2(dot(a0, at));
 
     let mut d = Sketch::seen(-68.0, 27.0, 112.0);
     d.face(rest, style::FACE);
@@ -47,15 +48,15 @@ pub(super) fn make() -> Result<Made> {
     }
     d.line(&[first, second], Stroke::new(palette::INK, 1.5));
     // Axis and angle of the first rotation.
-    let axis = axpy(&first, 0.55, &unit(&cross(&a0, &at)));
+    let axis = axpy(first, 0.55, unit(cross(a0, at)));
     d.arrow(&[first, axis], palette::BLUE);
     let theta_arc = angle_arc(&first, &moved[1], &second, 0.42);
     d.arrow(&theta_arc, palette::BLUE);
     // The second rotation moves the vertex on a circle about the edge.
-    let foot = axpy(&first, dot(&sub(&aligned, &first), &at), &at);
-    let u = sub(&aligned, &foot);
+    let foot = axpy(first, dot(sub(aligned, first), at), at);
+    let u = sub(aligned, foot);
     d.line(&[aligned, foot, turned], style::GHOST.dashed());
-    let q_arc = arc(&foot, &u, &cross(&at, &u), Q);
+    let q_arc = arc(&foot, &u, &cross(at, u), Q);
     d.arrow(&q_arc, PLACED);
     d.known(rest.iter().chain([&first, &second]));
     d.placed(&turned);

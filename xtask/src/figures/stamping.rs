@@ -1,7 +1,7 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, FigureRow, Made, Picture, Play, compared, course, height, of_ensembles, rows};
+use super::{Effort, FigureRow, Made, Picture, Play, compared, course, of_ensembles, rows};
 use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{Ensemble, FigureScene, Run, Spread, members, spreads};
 use crate::store::Store;
@@ -11,29 +11,13 @@ use serde::{Deserialize, Serialize};
 /// What the elastic blank is made of.
 const METAL: &str = "steel sheet";
 
-/// A scene of the figure, cut short and with a coarse mesh where the effort is small.
-fn scene_of(file: &str, name: &str, edits: &[&str], effort: Effort) -> Result<FigureScene> {
-    let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
-    let all = [edits, effort.quick_or(&quick[..], &[])].concat();
-    let all: Vec<String> = all.iter().map(|e| (*e).to_owned()).collect();
-    FigureScene::of(file, name, &all)
-}
-
-/// The scene that the paper shows.
+/// The scene that the paper shows, cut short and with a coarse mesh where the effort is small.
 pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
-    scene_of("fig13", "stamping", &[], effort)
+    let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
+    let edits = effort.quick_or(&quick[..], &[]).iter();
+    let edits: Vec<String> = edits.map(|e| (*e).to_owned()).collect();
+    FigureScene::of("fig13", "stamping", &edits)
 }
-
-/// Times of the pictures of the blank that the die leaves, seconds: before, half-way up, at the top, half-way
-/// down, and with the die back.
-const RELEASE: [f64; 5] = [0.0, 1.2, 2.4, 3.0, 4.0];
-
-/// The edit that makes the blank yield.
-const YIELDS: &str = "sheet.yield={}";
-
-/// A blank keeps its shape if its height at the end is at least this part of the largest one, and is flat
-/// again if not.
-const KEPT: f64 = 0.1;
 
 /// Steel presses the die by this factor more than rods do, at least.
 const HARDER: f64 = 10.0;
@@ -199,97 +183,16 @@ impl Punched {
     }
 }
 
-/// A blank that the die has left.
-struct Released {
-    label: &'static str,
-    run: Run,
-    all: Ensemble<Left>,
-}
-
-/// What is measured of such a blank.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Left {
-    /// Its height above its lowest point at the end, and the largest one before, metres.
-    height: f64,
-    largest: f64,
-    /// Work of the die, and what yielding dissipated of it, joules.
-    work: f64,
-    dissipated: f64,
-}
-
-impl Left {
-    fn of(run: &Run) -> Self {
-        let energy = &run.summary.energy;
-        Self {
-            height: height(run.end()),
-            largest: run.frames().map(height).fold(0.0, f64::max),
-            work: energy.work,
-            dissipated: energy.plastic,
-        }
-    }
-
-    /// The part of the largest height that is left.
-    fn kept(&self) -> f64 {
-        self.height / self.largest
-    }
-}
-
-impl Released {
-    fn of(store: &Store, [name, label]: [&'static str; 2], edits: &[&str]) -> Result<Self> {
-        let scene = scene_of("fig13-release", name, edits, store.effort)?;
-        let run = Run::of(store, scene)?;
-        let all = Ensemble::of(store, &run, members(store.effort), |run| Ok(Left::of(run)))?;
-        Ok(Self { label, run, all })
-    }
-
-    fn rows(&self) -> Vec<FigureRow> {
-        let yields = self.run.scene.scene().sheet[0].yields();
-        let yields = yields.map_or("never".into(), |y| {
-            format!("at {:.1} N m/m, hardening {:.3} N m", y.moment, y.hardening)
-        });
-        let spread = |value: fn(&Left) -> f64, digits: usize| {
-            self.all.spread(value).text(|v| format!("{v:.digits$}"))
-        };
-        let mut rows = rows! {
-            "yields" => yields,
-            "largest height of the blank, mm" => spread(|l| 1e3 * l.largest, 1),
-            "its height when the die is back, mm" => spread(|l| 1e3 * l.height, 1),
-            "work of the die, J" => spread(|l| l.work, 2),
-            "dissipated by yielding, J" => spread(|l| l.dissipated, 2),
-            "runs of the ensemble" => self.all.len().to_string(),
-        };
-        rows.extend(course(&self.run.summary));
-        rows
-    }
-
-    fn page(&self, effort: Effort) -> Result<Play> {
-        let label = format!("stamping, the die withdraws, {}", self.label);
-        VIEW.play(&self.run, effort, 13, &label)
-    }
-}
-
 pub(super) fn make(store: &Store) -> Result<Made> {
     let effort = store.effort;
     let rods = scene(effort)?;
     let steel = Punched::of(store, rods.made_of(METAL)?)?;
     let rods = Punched::of(store, rods)?;
-    let springs = ["stamping-release-elastic", "elastic steel"];
-    let springs = Released::of(store, springs, &[])?;
-    let stays = ["stamping-release", "steel that yields"];
-    let stays = Released::of(store, stays, &[YIELDS])?;
-    let both = [&springs, &stays];
-    let kept = both.map(|r| r.all.median(Left::kept));
-    ensure!(
-        effort == Effort::Quick || kept[0] < KEPT && kept[1] > KEPT,
-        "elastic steel and steel that yields keep the parts {kept:?} of their heights"
-    );
     let peaks = [&steel, &rods].map(|punched| punched.peak().median);
     ensure!(
         effort == Effort::Quick || peaks[0] > HARDER * peaks[1],
         "steel and rods press the die with up to {peaks:?} N"
     );
-    let ends = both.map(|r| (r.label.to_owned(), &r.run));
-    let left = "The blank after the die has withdrawn: elastic steel is flat, steel that yields keeps a shape";
     let alt = "Force of the sheet on the die over its stroke";
     let plot = Charts::row([rods.plot(), steel.plot()]);
     Ok(Made {
@@ -297,25 +200,16 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.",
         here: "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
                corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic steel sheet, \
-               which bends as half a millimetre of steel does and never yields: it presses the die far more than rods do. In the last two \
-               pictures the die withdraws: the blank of elastic steel springs back, and one that yields (S235, docs/materials.md) \
-               keeps its shape.",
-        tables: vec![
-            of_ensembles(compared(&["rods", METAL], &[rods.rows()?, steel.rows()?])),
-            of_ensembles(compared(&both.map(|r| r.label), &both.map(Released::rows))),
-        ],
+               which bends as half a millimetre of steel does and never yields: it presses the die far more than rods do.",
+        tables: vec![of_ensembles(compared(
+            &["rods", METAL],
+            &[rods.rows()?, steel.rows()?],
+        ))],
         pictures: vec![
             rods.picture("fig13.png", effort)?,
             steel.picture("fig13-elastic.png", effort)?,
             Picture::svg("fig13-force", &plot, alt),
-            VIEW.picture(&stays.run, effort, ["fig13-release.png", left], &RELEASE)?,
-            VIEW.ends(&ends, effort, ["fig13-released.png", left])?,
         ],
-        pages: vec![
-            page(&rods.run, effort)?,
-            page(&steel.run, effort)?,
-            springs.page(effort)?,
-            stays.page(effort)?,
-        ],
+        pages: vec![page(&rods.run, effort)?, page(&steel.run, effort)?],
     })
 }

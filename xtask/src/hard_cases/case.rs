@@ -6,10 +6,11 @@ use crate::interrupt;
 use crate::report::{Effort, Finding, Table, columns};
 use anyhow::{Context, Result, ensure};
 use isosheet_formats::read_history;
-use isosheet_runs::{RunError, Summary};
+use isosheet_runs::RunError;
 use isosheet_scenes::SceneFile;
 use rayon::prelude::*;
 use serde::Deserialize;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -51,16 +52,16 @@ pub(super) struct Case {
 #[derive(Debug)]
 pub(super) struct CaseRun {
     pub(super) edits: Vec<String>,
-    pub(super) outcome: Result<Summary, Stopped>,
+    /// `summary.json`, or what the accepted steps say of a run that stopped early.
+    numbers: Value,
+    pub(super) stopped: Option<Stopped>,
 }
 
-/// A run that stopped early, by what its accepted steps say.
+/// When a run stopped early, seconds, and why.
 #[derive(Debug)]
 pub(super) struct Stopped {
     pub(super) time: f64,
     pub(super) why: String,
-    pub(super) largest_strain: f64,
-    pub(super) smallest_gap: Option<f64>,
 }
 
 /// The name of a case, if there is one of that name.
@@ -176,38 +177,27 @@ impl Case {
             let edits = run.edits.iter().map(|e| format!(" --set '{e}'"));
             format!("isosheet simulate {scene}{}", edits.collect::<String>())
         };
-        let complete = |run: &CaseRun, of: fn(&Summary) -> f64| run.outcome.as_ref().ok().map(of);
         Table::of(
             "The runs",
             runs,
             columns! { run;
                 "command" => command(run),
-                "steps" => complete(run, |s| s.steps as f64),
-                "rejected" => complete(run, |s| s.rejected as f64),
-                "edge strain" => run.largest_strain(),
-                "smallest gap, m" => run.smallest_gap(),
-                "energy drift at the end, J" => complete(run, |s| s.ending.energy_drift),
-                "stops early at, s" => run.outcome.as_ref().err().map(|stopped| stopped.time),
+                "steps" => run.number("steps"),
+                "rejected" => run.number("rejected"),
+                "edge strain" => run.number("largest_strain"),
+                "smallest gap, m" => run.number("smallest_gap"),
+                "energy drift at the end, J" => run.number("ending.energy_drift"),
+                "stops early at, s" => run.stopped.as_ref().map(|stopped| stopped.time),
             },
         )
     }
 }
 
 impl CaseRun {
-    /// Of all accepted steps, also where the run stopped early.
-    pub(super) fn largest_strain(&self) -> f64 {
-        match &self.outcome {
-            Ok(summary) => summary.largest_strain,
-            Err(stopped) => stopped.largest_strain,
-        }
-    }
-
-    /// As [`CaseRun::largest_strain`].
-    pub(super) fn smallest_gap(&self) -> Option<f64> {
-        match &self.outcome {
-            Ok(summary) => summary.smallest_gap,
-            Err(stopped) => stopped.smallest_gap,
-        }
+    /// A number by its place, such as `energy.least_potential`.
+    pub(super) fn number(&self, place: &str) -> Option<f64> {
+        let place = format!("/{}", place.replace('.', "/"));
+        self.numbers.pointer(&place)?.as_f64()
     }
 }
 
@@ -219,21 +209,28 @@ fn ran(scene: &Path, edits: Vec<String>) -> Result<CaseRun> {
     let file = SceneFile::read(scene, &[&edits[..], &unseen].concat())?;
     let folder = tempfile::tempdir()?;
     let folder = folder.path().join("run");
-    let outcome = match interrupt::simulate(&file, &folder, &mut |_| ())? {
-        Ok(summary) => Ok(summary),
+    let (numbers, stopped) = match interrupt::simulate(&file, &folder, &mut |_| ())? {
+        Ok(summary) => (serde_json::to_value(summary)?, None),
         Err(error @ (RunError::Step(_) | RunError::Scene(_))) => {
             let rows = read_history(&folder.join("history.csv")).unwrap_or_default();
             let message = error.to_string();
-            Err(Stopped {
+            let stopped = Stopped {
                 time: rows.last().map_or(0.0, |row| row.t),
                 why: message.lines().next().unwrap_or_default().to_owned(),
-                largest_strain: rows.iter().fold(0.0, |most, row| row.strain.max(most)),
-                smallest_gap: rows.iter().filter_map(|row| row.gap).reduce(f64::min),
-            })
+            };
+            let numbers = json!({
+                "largest_strain": rows.iter().fold(0.0, |most, row| row.strain.max(most)),
+                "smallest_gap": rows.iter().filter_map(|row| row.gap).reduce(f64::min),
+            });
+            (numbers, Some(stopped))
         }
         Err(error) => return Err(error.into()),
     };
-    Ok(CaseRun { edits, outcome })
+    Ok(CaseRun {
+        edits,
+        numbers,
+        stopped,
+    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! What the book shows of a report: `measured.md` beside the page of the report, in parts that pages of the
 //! book copy by their names.
 //!
-//! A file has one or several measurements, each with its origin, the fingerprint of the sources that were
-//! measured, and its parts. That of a report has one; in `docs/measured` parts stay until they are measured
-//! anew.
+//! A file has one or several measurements, each with its origin and its parts. The file of a report has one; in
+//! `docs/measured` parts stay until they are measured anew.
 
 use super::{Effort, Table};
 use crate::store::Store;
@@ -51,14 +50,23 @@ fn escaped(text: &str) -> String {
 /// Parts that were measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measurement {
-    /// Fingerprint of the sources that were measured, see [`crate::sources`].
-    pub(crate) sources: String,
     /// How, at which commit and on which machine, in a sentence or two.
     pub(crate) origin: String,
     pub(crate) parts: Vec<Part>,
 }
 
-const MEASUREMENT: &str = "<!-- measurement of the sources ";
+impl Measurement {
+    /// The commit that its origin names.
+    pub(crate) fn commit(&self) -> &str {
+        let mut words = self
+            .origin
+            .split_whitespace()
+            .skip_while(|w| *w != "commit");
+        words.nth(1).unwrap_or_default()
+    }
+}
+
+const MEASUREMENT: &str = "<!-- measurement -->";
 const PART: &str = "<!-- part: ";
 const PART_END: &str = "<!-- /part -->";
 
@@ -73,8 +81,7 @@ pub(crate) fn to_markdown(report: &str, measurements: &[Measurement]) -> String 
         "# Measured: {report}\n\nThis page was written by the report that it names, and is not edited by hand.\n"
     );
     for measurement in measurements {
-        let (sources, origin) = (&measurement.sources, &measurement.origin);
-        let _ = write!(file, "\n{MEASUREMENT}{sources} -->\n{origin}\n");
+        let _ = write!(file, "\n{MEASUREMENT}\n{}\n", measurement.origin);
         for Part { name, text } in &measurement.parts {
             let _ = write!(file, "\n{PART}{name} -->\n{text}\n{PART_END}\n");
         }
@@ -91,9 +98,8 @@ pub(crate) fn from_markdown(file: &str) -> Vec<Measurement> {
             let text: Vec<&str> = lines.by_ref().take_while(|line| !end(line)).collect();
             text.join("\n")
         };
-        if let Some(sources) = comment(line, MEASUREMENT) {
+        if line == MEASUREMENT {
             measurements.push(Measurement {
-                sources: sources.to_owned(),
                 origin: until(&str::is_empty),
                 parts: Vec::new(),
             });
@@ -122,12 +128,11 @@ pub(crate) fn merged(old: Vec<Measurement>, new: Vec<Measurement>) -> Vec<Measur
 
 /// Writes the file of a report. Quick results are no results: of them there is no such file.
 pub(crate) fn write(store: &Store, report: &str, parts: Vec<Part>) -> Result<()> {
-    let Some(origin) = store.origin() else {
+    let Some(commit) = store.commit() else {
         return Ok(());
     };
     let measurement = Measurement {
-        sources: origin.sources.clone(),
-        origin: sentence(report, store.effort, &origin.commit, &super::machine()),
+        origin: sentence(report, store.effort, commit, &super::machine()),
         parts,
     };
     Ok(store.write(FILE, to_markdown(report, &[measurement]).as_bytes())?)
@@ -146,10 +151,9 @@ fn sentence(report: &str, effort: Effort, commit: &str, machine: &str) -> String
 mod tests {
     use super::*;
 
-    fn measurement(sources: &str, parts: &[(&str, &str)]) -> Measurement {
+    fn measurement(commit: &str, parts: &[(&str, &str)]) -> Measurement {
         Measurement {
-            sources: sources.to_owned(),
-            origin: format!("Measured with {sources}.\nOn two lines."),
+            origin: format!("Measured at commit {commit} on\ntwo lines."),
             parts: parts
                 .iter()
                 .map(|(name, text)| Part::text(*name, *text))
@@ -166,6 +170,7 @@ mod tests {
         first.parts.push(table);
         let all = [first, measurement("2f", &[("more", "text\n\nmore text")])];
         assert_eq!(from_markdown(&to_markdown("cost", &all)), all);
+        assert_eq!(all[1].commit(), "2f");
     }
 
     #[test]

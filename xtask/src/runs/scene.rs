@@ -80,17 +80,6 @@ impl FigureScene {
         })
     }
 
-    /// This scene with a sheet that never yields, under another name.
-    ///
-    /// # Errors
-    /// A scene that has not one sheet that yields.
-    pub(crate) fn without_yield(&self, name: &str) -> Result<Self> {
-        self.with_sheet(name.to_owned(), |sheet| {
-            let yields = sheet.remove("yield");
-            yields.context("the sheet does not yield").map(drop)
-        })
-    }
-
     /// This scene with a sheet at rest whose vertices are displaced in its plane by random vectors of up to
     /// `part` mean edge lengths in each direction, under another name: a mesh without straight lines of
     /// edges.

@@ -1,8 +1,9 @@
 //! Sheets as bodies with a thickness.
 
 use super::ExportError;
-use crate::mesh_file::{MeshFile, cross, sub};
+use crate::mesh_file::MeshFile;
 use isosheet_files::DataError;
+use isosheet_mesh::vec3::{cross, sub};
 use isosheet_mesh::wording::given;
 use std::collections::HashSet;
 

@@ -1,6 +1,7 @@
 //! Cutting polygons into triangles.
 
 use super::plane::{NEAR, meet, twice_area};
+use isosheet_mesh::vec3::{axpy, cross, dot, sub, unit};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Point = [f64; 3];
@@ -155,7 +156,7 @@ fn is_simple(corners: &[u32], places: &[Point], near: f64) -> bool {
 fn in_plane(points: &[Point]) -> Vec<Point> {
     // Newell: the sum of the cross products about any point is twice the polygon's area vector.
     let area = points.windows(2).fold([0.0; 3], |sum, p| {
-        add(sum, cross(sub(p[0], points[0]), sub(p[1], points[0])))
+        axpy(sum, 1.0, cross(sub(p[0], points[0]), sub(p[1], points[0])))
     });
     let normal = unit(area);
     // The axis that is farthest from the normal, turned into the plane, so that coordinates in the plane of
@@ -182,31 +183,6 @@ fn extent(places: &[Point]) -> f64 {
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
     };
     along(0).max(along(1))
-}
-
-pub(crate) fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn add(a: Point, b: Point) -> Point {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(u: Point, v: Point) -> Point {
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
-}
-
-fn unit(a: Point) -> Point {
-    let length = dot(a, a).sqrt();
-    a.map(|c| c / length)
 }
 
 #[cfg(test)]
@@ -337,7 +313,7 @@ mod tests {
             let [a, b, c] = t.map(|k| points[k as usize]);
             cross(sub(b, a), sub(c, a))
         });
-        areas.fold([0.0; 3], add)
+        areas.fold([0.0; 3], |sum, a| axpy(sum, 1.0, a))
     }
 
     /// Outlines of which no corner sees all others, with their areas.

@@ -232,21 +232,6 @@ proptest! {
         let text = written(&t, &x);
         prop_assert_eq!(parse_obj(&text, Polygons::Refuse).unwrap().positions, x);
     }
-
-    /// Whatever is in a file, it is read or refused, never a panic.
-    #[test]
-    fn no_text_makes_it_panic(text in "([vflpg#]|vt|usemtl| |/|-?[0-9]{1,3}|nan|1e[0-9]|\\\\|\n){0,60}") {
-        for polygons in [Polygons::Refuse, Polygons::Triangulate] {
-            if let Ok(m) = parse_obj(text.as_bytes(), polygons) {
-                let _ = m.into_sheet();
-            }
-        }
-    }
-
-    #[test]
-    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = parse_obj(&bytes, Polygons::Refuse);
-    }
 }
 
 #[test]
