@@ -1,7 +1,7 @@
 //! The lattice of vortex rings on the faces of a sheet.
 
 use super::error::AttachedFlowError;
-use crate::vectors::point;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

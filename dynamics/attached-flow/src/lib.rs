@@ -6,7 +6,6 @@ mod lattice;
 mod step;
 #[cfg(test)]
 mod tests;
-mod vectors;
 mod vortex;
 mod wake;
 

@@ -2,11 +2,11 @@
 
 use super::Attached;
 use super::wake::Past;
-use crate::vectors::{add, dot, largest_norm};
 use isosheet_dynamics::term::{
     BlockSink, Exchange, Formula, HessianPart, ImplicitForce, Iterate, StepStart, Term, Value,
 };
 use isosheet_dynamics::{Force, StepError};
+use isosheet_materials::vectors::{add, dot, largest_norm};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -131,6 +131,7 @@ pub struct ElasticSheet {
 
 /// The strain of a face of an [`ElasticSheet`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StrainOfFace {
     /// The face.
     pub face: FaceId,

@@ -2,6 +2,7 @@
 
 use isosheet_materials::hessian::HessianProduct;
 use isosheet_materials::potential::{At, Potential};
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::Topology;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,6 +15,7 @@ const DISPLACEMENTS: [f64; 6] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// By how much derivatives differ from central differences, as parts of their size: zero where the
 /// differences do not resolve it, since the energy is large against its change or near a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DerivativeErrors {
     /// Of the gradient against the energy.
     pub gradient: f64,
@@ -156,8 +158,4 @@ fn settled(values: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 fn norm(v: &[f64]) -> f64 {
     dot(v, v).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

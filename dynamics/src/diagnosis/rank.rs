@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, Vector3};
 
 /// Rank of the length constraints at a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RodRank {
     /// Rods with at least one free end.
     pub rods: usize,

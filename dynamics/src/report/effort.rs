@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 /// Progress of a step under way, see [`Simulation::step_watched`](crate::Simulation::step_watched).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StepProgress {
     /// End of the accepted sub-steps, seconds.
     pub t: f64,

@@ -4,6 +4,7 @@ use isosheet_mesh::FaceId;
 
 /// A face of an [`ElasticSheet`](crate::ElasticSheet) that is curved without stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct CurvedFace {
     /// The face.
     pub face: FaceId,

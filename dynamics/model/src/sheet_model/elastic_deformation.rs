@@ -7,6 +7,7 @@ use isosheet_materials::potential::Memories;
 /// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is
 /// fine enough ([`SheetModel::elastic_deformation`]).
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ElasticDeformation {
     /// The Frobenius norm of Green's strain, see `ElasticSheet`.
     pub strain: Vec<f64>,

@@ -135,6 +135,7 @@ pub struct EnclosedGas {
 
 /// What a gauge at a gas shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct GasState {
     /// Volume that the surface encloses, cubic metres.
     pub volume: f64,
