@@ -22,8 +22,8 @@ pub use round::RoundBody;
 use round::Rounds;
 
 use crate::Obstacle;
-use body::Body;
-use evaluate::{Placed, Sheet};
+use body::ContactBody;
+use evaluate::{Placed, SheetAt};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, CarriedPoint, Coefficients, Contact,
     ContactError, ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepMotion,
@@ -122,7 +122,7 @@ pub struct Contacts {
     thickness: Thickness,
     /// The smallest height of each face of a sheet, metres; infinite of what does not touch itself.
     heights: Vec<f64>,
-    bodies: Vec<Body>,
+    bodies: Vec<ContactBody>,
     has_self_contact: bool,
     /// Round bodies in the place of polyhedra.
     rounds: Rounds,
@@ -229,8 +229,12 @@ impl Contacts {
         coefficients.validate()?;
         let number = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         let segments = self.options.segments;
-        self.bodies
-            .push(Body::new(obstacle, number, segments, self.rounds.ends())?);
+        self.bodies.push(ContactBody::new(
+            obstacle,
+            number,
+            segments,
+            self.rounds.ends(),
+        )?);
         self.laws.bodies.push(coefficients);
         self.neighbours = None;
         Ok(self)
@@ -355,7 +359,7 @@ impl Contacts {
         }
         for (number, other) in (0..).zip(&mut self.bodies) {
             let obstacle = other.obstacle().clone();
-            *other = Body::new(obstacle, number, self.options.segments, self.rounds.ends())?;
+            *other = ContactBody::new(obstacle, number, self.options.segments, self.rounds.ends())?;
         }
         self.neighbours = None;
         Ok(self)
@@ -455,7 +459,7 @@ impl Contacts {
 
     /// The bodies, in the order in which they were added.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = &Obstacle> {
-        self.bodies.iter().map(Body::obstacle)
+        self.bodies.iter().map(ContactBody::obstacle)
     }
 
     /// Largest distance below which the barrier acts between any two parts, metres.
@@ -571,7 +575,7 @@ impl Contact for Contacts {
         bodies: &[BodyPlace],
         out: &mut Vec<ActiveContact>,
     ) {
-        let sheet = Sheet {
+        let sheet = SheetAt {
             mesh: &self.mesh,
             rounds: &self.rounds,
             x,

@@ -180,6 +180,7 @@ pub enum TableChart {
 
 /// One line of [`condition_table`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ConditionRow {
     /// Level k of the union-jack square M^k.
     pub level: u32,

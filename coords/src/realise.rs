@@ -5,6 +5,7 @@
 //! to rounding, however large the coordinates' change.
 
 mod error;
+mod intersections;
 
 pub use error::RealiseError;
 
@@ -235,11 +236,11 @@ impl FrontMap {
     /// angle about the line.
     ///
     /// # Errors
-    /// [`RealiseError::Incompatible`] naming edge and angles where Eq. 10 is violated (by Theorem 1 a realisation
-    /// exists otherwise, but only where no vertex has a fourth known neighbour, so that there are no
-    /// [closures](Assignment::closures)), [`RealiseError::Placement`] for other impossible
-    /// placements, [`RealiseError::Closure`] when a closure edge does not get its length. `x` holds
-    /// the vertices placed up to then.
+    /// [`RealiseError::Incompatible`] naming edge and angles where Eq. 10 is violated (by Theorem 1 a
+    /// realisation exists otherwise, but only where no vertex has a fourth known neighbour, so that there are
+    /// no [closures](Assignment::closures)), [`RealiseError::Placement`] for other impossible placements,
+    /// [`RealiseError::Closure`] when a closure edge does not get its length. `x` holds the vertices placed
+    /// up to then.
     pub fn realise(
         &self,
         q: &[f64],

@@ -55,92 +55,54 @@
 //! ones for the damped methods only). Their forces are [`Simulation::reactions`].
 
 mod conservative;
-pub mod constraint;
 pub mod contact;
 mod damped;
 mod diagnosis;
 pub mod engine;
-mod hessian;
 mod linear;
-mod material;
-mod model;
-mod motion;
 mod objective;
-mod options;
-pub mod potential;
 mod report;
-mod rigid_body;
 mod run;
-mod state;
 mod step;
-pub mod term;
-mod vectors;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
 pub use conservative::rattle::RattleOptions;
-pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
-pub use hessian::HessianSink;
-pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle};
-pub use material::direction::{DirectionError, MaterialDirection};
-pub use material::elastic_sheet::{
-    CurvedFace, ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane, StrainOfFace,
+pub use isosheet_materials::{
+    At, CouplingKind, CreaseError, CreaseSpring, CreaseSprings, Curl, CurlError, Curvature,
+    CurvedFace, DirectionError, Directions, ElasticSheet, ElasticSheetError, FLAT, FaceCurvature,
+    Force, Glue, GlueError, Gravity, HessianSink, Isotropic, LimitError, Limited, LineClamp,
+    Material, MaterialDirection, MaterialReport, MembraneLaw, Memories, NamedMaterial,
+    NaturalTensor, NoFace, OptionsError, Orthotropic, OrthotropicMembrane, OrthotropicPlate,
+    PAPER_GRAVITY, Patched, PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
+    Potential, PotentialShape, Reached, Remembering, RestAngle, Settled, Stiffening, StrainOfFace,
+    UnknownMaterial, Yield, potential,
 };
-pub use material::glue::{Glue, GlueError};
-pub use material::patched::{NoFace, Patched};
-pub use material::plasticity::Yield;
-pub use material::plate_bending::{
-    Curl, CurlError, Curvature, FaceCurvature, LineClamp, NaturalTensor, OrthotropicPlate,
-    PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
+pub use isosheet_model::{
+    AccelerationField, Air, AirError, Attachment, BadPotential, BodyForce, BodyTorque,
+    ClampAcrossMesh, Continuation, Cut, Driver, EdgeMoment, ElasticDeformation, EnclosedGas, Gas,
+    GasError, GasState, Hand, HandError, Infeasibility, Isometry, JointCoordinate, JointError,
+    JointSpring, LoadError, LoadedFaces, LoadedFacesError, ModelError, PotentialFault,
+    PotentialOfPart, Pressing, Reason, RigidBody, RigidBodyError, SheetModel, SheetOfMaterial,
+    SheetOfMaterialError, Solid, SolidError, State, StepError, Support, TraceEvent, TurningLoad,
+    VertexConstraint, VertexLoad, Wind, constraint, immobile_vertices, term,
 };
-pub use material::stiffening::Stiffening;
-pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
-pub use model::air::{Air, AirError, Wind};
-pub use model::clamps::ClampAcrossMesh;
-pub use model::edge_moment::EdgeMoment;
-pub use model::elastic_deformation::ElasticDeformation;
-pub use model::gas::{EnclosedGas, Gas, GasError, GasState};
-pub use model::hand::{Hand, HandError};
-pub use model::immobile::immobile_vertices;
-pub use model::load::{AccelerationField, LoadError, VertexLoad};
-pub use model::loaded_faces::{LoadedFaces, LoadedFacesError};
-pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
-pub use model::part::PotentialOfPart;
-pub use model::turning_load::TurningLoad;
-pub use model::{Isometry, ModelError, SheetModel};
-pub use motion::profile::{Interpolation, Profile, ProfileError};
-pub use motion::{
-    AxisRotation, Keyframe, Kinematics, Led, MotionError, PointMotion, PointProfile,
-    RigidDisplacement, RigidMotion, RigidProfile,
-};
-pub use options::OptionsError;
-pub use potential::{
-    At, CouplingKind, Force, Gravity, Limited, MaterialReport, Memories, PAPER_GRAVITY, Potential,
-    PotentialShape, Reached, Remembering, Settled,
+pub use isosheet_motion::{
+    AxisRotation, Interpolation, Keyframe, Kinematics, Led, MotionError, PointMotion, PointProfile,
+    Profile, ProfileError, RigidDisplacement, RigidMotion, RigidProfile,
 };
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;
-pub use report::infeasibility::{Driver, Infeasibility};
-pub use report::potential_fault::{BadPotential, PotentialFault};
-pub use report::pressing::Pressing;
-pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;
-pub use report::step_error::{StepError, StepOutcome, StepReport};
-pub use report::support::Support;
-pub use report::trace::{Continuation, Cut, TraceEvent};
-pub use rigid_body::{
-    Attachment, BodyForce, BodyTorque, JointCoordinate, JointError, JointSpring, RigidBody,
-    RigidBodyError, Solid, SolidError,
-};
+pub use report::step_report::{StepOutcome, StepReport};
 pub use run::checkpoint::Checkpoint;
 pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
-pub use state::State;
 pub use step::reaction::{Imbalance, Reaction};
 #[doc(hidden)]
 pub use step::tuning::Tuning;

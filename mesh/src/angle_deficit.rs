@@ -4,9 +4,9 @@ use crate::vec3::{at, cross, dot, norm, sub};
 use crate::{Sheet, Topology, VertexId, angle_from_lengths};
 use std::f64::consts::TAU;
 
-/// The angle deficit of each vertex at positions `x` (length 3V), radians: `2 pi` less the sum of the angles of the
-/// faces around it, the integral of the Gauss curvature over the surface near the vertex (Gauss and Bonnet); 0 at
-/// vertices of the boundary. Positive at the apex of a cone, negative at a saddle.
+/// The angle deficit of each vertex at positions `x` (length 3V), radians: `2 pi` less the sum of the angles
+/// of the faces around it, the integral of the Gauss curvature over the surface near the vertex (Gauss and
+/// Bonnet); 0 at vertices of the boundary. Positive at the apex of a cone, negative at a saddle.
 ///
 /// # Panics
 /// If `x` is not of length 3V.
@@ -34,9 +34,9 @@ fn deficits(t: &Topology, sums: &[f64]) -> Vec<f64> {
 
 /// The Gauss curvature that a sheet has besides that of its rest shape.
 ///
-/// Lengths determine angles, so that the deficits of a mesh whose edges keep their lengths stay those of its rest
-/// shape, however it is bent: a flat sheet, and one that is cut as a cone, has none besides. What is left is the
-/// stretching of an elastic sheet, which is how far it is from developable.
+/// Lengths determine angles, so that the deficits of a mesh whose edges keep their lengths stay those of its
+/// rest shape, however it is bent: a flat sheet, and one that is cut as a cone, has none besides. What is
+/// left is the stretching of an elastic sheet, which is how far it is from developable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussCurvature {
     /// Deficits of the rest shape, radians.
@@ -85,18 +85,19 @@ impl GaussCurvature {
         }
     }
 
-    /// Its density at each vertex at positions `x` (length 3V), 1/m2: the [angle deficit](angle_deficits) without that
-    /// of the rest shape over a third of the area of the faces around the vertex; 0 at vertices of the boundary, and
-    /// where the deficit is one that an error of the lengths may hide.
+    /// Its density at each vertex at positions `x` (length 3V), 1/m2: the [angle deficit](angle_deficits)
+    /// without that of the rest shape over a third of the area of the faces around the vertex; 0 at vertices
+    /// of the boundary, and where the deficit is one that an error of the lengths may hide.
     ///
-    /// Of a face with the sides `a` opposite of the vertex, `b` and `c`, and the area `A`, the angle between `b` and
-    /// `c` changes by `a (da - b' db/b - c' dc/c) / (2 A)`, where the altitude divides `a` in `b'` and `c'`. With
-    /// relative errors of the lengths of at most `e` that is `e a (a + |b'| + |c'|) / (2 A)`, and the sum over the
-    /// faces around a vertex is the bound. `e` is [`GaussCurvature::KEPT`], or the round-off of the positions over
-    /// the shortest edge where that is larger.
+    /// Of a face with the sides `a` opposite of the vertex, `b` and `c`, and the area `A`, the angle between
+    /// `b` and `c` changes by `a (da - b' db/b - c' dc/c) / (2 A)`, where the altitude divides `a` in `b'`
+    /// and `c'`. With relative errors of the lengths of at most `e` that is `e a (a + |b'| + |c'|) / (2 A)`,
+    /// and the sum over the faces around a vertex is the bound. `e` is [`GaussCurvature::KEPT`], or the
+    /// round-off of the positions over the shortest edge where that is larger.
     ///
-    /// On smooth surfaces the deficits of the vertices of a region add up to the integral of the Gauss curvature
-    /// over it, to second order in the size of the faces. On irregular meshes single densities scatter.
+    /// On smooth surfaces the deficits of the vertices of a region add up to the integral of the Gauss
+    /// curvature over it, to second order in the size of the faces. On irregular meshes single densities
+    /// scatter.
     ///
     /// # Panics
     /// If `x` is not of length 3V.
@@ -114,7 +115,8 @@ impl GaussCurvature {
         now.zip(meshes).map(of_vertex).collect()
     }
 
-    /// The relative error of lengths at positions `x`: that of lengths that are kept, or of the round-off of positions.
+    /// The relative error of lengths at positions `x`: that of lengths that are kept, or of the round-off of
+    /// positions.
     pub fn error_of_lengths(&self, x: &[f64]) -> f64 {
         let largest = x.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
         Self::KEPT.max(f64::EPSILON * largest / self.shortest)
@@ -129,8 +131,9 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use std::f64::consts::PI;
 
-    /// A pyramid of `n` sides with rings of faces: its faces at the apex have the angle `2 asin(sin(pi / n) sin b)`
-    /// with the half angle `b` of the cone around it, and no other inner vertex has a deficit.
+    /// A pyramid of `n` sides with rings of faces: its faces at the apex have the angle
+    /// `2 asin(sin(pi / n) sin b)` with the half angle `b` of the cone around it, and no other inner vertex
+    /// has a deficit.
     #[test]
     fn a_cone_has_its_deficit_at_the_apex() {
         let (sides, half_angle, rings) = (9_u32, 0.6_f64, 3_u32);
@@ -180,7 +183,8 @@ mod tests {
         );
     }
 
-    /// A flat sheet has none, in any place; nor has one that is rolled up such that its edges keep their lengths.
+    /// A flat sheet has none, in any place; nor has one that is rolled up such that its edges keep their
+    /// lengths.
     #[test]
     fn lengths_that_are_kept_leave_no_curvature() {
         let sheet = generate::grid(8, 6, 0.3, 0.2, Diagonals::Rising).unwrap();
@@ -206,8 +210,8 @@ mod tests {
         assert!(gauss.at(t, &x).iter().any(|k| *k != 0.0));
     }
 
-    /// A grid on a helicoid of the twist `t`, `(u, v) -> (u cos t v, u sin t v, v)`, with the vertices that are not
-    /// beside the rim moved at random by a part of a cell.
+    /// A grid on a helicoid of the twist `t`, `(u, v) -> (u cos t v, u sin t v, v)`, with the vertices that
+    /// are not beside the rim moved at random by a part of a cell.
     fn helicoid(cells: usize, twist: f64, jitter: f64) -> (Sheet, Vec<f64>) {
         let flat = generate::grid(cells, cells, 1.0, 1.0, Diagonals::Falling).unwrap();
         let t = flat.topology();
@@ -227,9 +231,9 @@ mod tests {
         (flat, x)
     }
 
-    /// The Gauss curvature of a helicoid is `-t^2 / (1 + t^2 u^2)^2`: on its axis `-t^2`. Densities on a grid are of
-    /// second order there. The sum of the deficits is the integral to second order; by Gauss and Bonnet it is that of
-    /// the faces at the rim alone, however irregular the mesh is inside.
+    /// The Gauss curvature of a helicoid is `-t^2 / (1 + t^2 u^2)^2`: on its axis `-t^2`. Densities on a grid
+    /// are of second order there. The sum of the deficits is the integral to second order; by Gauss and
+    /// Bonnet it is that of the faces at the rim alone, however irregular the mesh is inside.
     #[test]
     fn deficits_of_a_helicoid_are_its_gauss_curvature() {
         let twist = 0.8_f64;
@@ -246,8 +250,8 @@ mod tests {
             errors[0] / errors[1] > 3.5 && errors[1] / errors[2] > 3.5,
             "{errors:?}"
         );
-        // The integral over |u|, |v| <= a is -2 a t^2 int_{-a}^{a} (1 + t^2 u^2)^(-3/2) du, and that integral is
-        // 2 a (1 + t^2 a^2)^(-1/2).
+        // The integral over |u|, |v| <= a is -2 a t^2 int_{-a}^{a} (1 + t^2 u^2)^(-3/2) du, and that integral
+        // is 2 a (1 + t^2 a^2)^(-1/2).
         let errors = [8, 16, 32].map(|cells| {
             let sum = |jitter: f64| -> f64 {
                 let (flat, x) = helicoid(cells, twist, jitter);

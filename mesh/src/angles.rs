@@ -19,8 +19,8 @@ pub fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
     2.0 * short.max(0.0).sqrt().atan2(long.max(0.0).sqrt())
 }
 
-/// The angle that differs from `angle` by whole turns and is nearest to `near`, radians: an angle that is followed
-/// beyond half a turn, where it changes by less than that from one state to the next.
+/// The angle that differs from `angle` by whole turns and is nearest to `near`, radians: an angle that is
+/// followed beyond half a turn, where it changes by less than that from one state to the next.
 pub fn angle_near(angle: f64, near: f64) -> f64 {
     angle + TAU * ((near - angle) / TAU).round()
 }

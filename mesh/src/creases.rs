@@ -18,6 +18,7 @@ pub enum LineEnds {
 
 /// A maximal chain of interior edges that runs straight on at every vertex between them.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CreaseLine {
     /// The vertices along the line; the first is repeated at the end of a closed line.
     pub vertices: Vec<VertexId>,
@@ -34,6 +35,7 @@ pub struct CreaseLine {
 
 /// The lines of one direction that run from boundary to boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FoldingDirection {
     /// The angle against the x axis, in radians within [0, pi).
     pub angle: f64,

@@ -3,7 +3,8 @@
 use crate::{EdgeId, Sheet};
 use std::ops::Range;
 
-/// The length constraints of a sheet (Liu, Tang and Joneja 2007, Eq. 3), one for each edge or for some of them,
+/// The length constraints of a sheet (Liu, Tang and Joneja 2007, Eq. 3), one for each edge or for some of
+/// them,
 ///
 /// `c_e(x) = (|x_a - x_b|^2 - l_e^2) / 2,`
 ///

@@ -8,8 +8,8 @@
 //! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
 //!   the sheet folds straight.
 //! * [`FlatFoldingLaw`]: whether the creases around a vertex fold flat together.
-//! * [`Ruling`], [`angle_deficits`], [`GaussCurvature`]: straight lines of a bent sheet, and how far it is from
-//!   developable.
+//! * [`Ruling`], [`angle_deficits`], [`GaussCurvature`]: straight lines of a bent sheet, and how far it is
+//!   from developable.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
 //! * [`Part`]: one of several sheets in their union.
 //! * [`orient_consistently`]: repair on request.

@@ -61,9 +61,8 @@ impl DegreeFour {
 }
 
 /// Miura's pattern of [`generate::miura`](crate::generate::miura) with rigid panels, by the angle `theta` of
-/// the panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut), half the fold angle of the zigzag
-/// creases. After Wei, Guo, Dudte,
-/// Liang and Mahadevan 2013.
+/// the panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut), half the fold angle of
+/// the zigzag creases. After Wei, Guo, Dudte, Liang and Mahadevan 2013.
 #[derive(Debug, Clone, Copy)]
 pub struct Miura {
     /// Length of the straight creases, metres.

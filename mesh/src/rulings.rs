@@ -4,26 +4,28 @@ use crate::vec3::{Vec3, cross, dot, norm, sub};
 
 /// The line along which a face is straight, and how much it is curved across it.
 ///
-/// A developable surface has one principal curvature that is zero, and straight lines in it along that direction,
-/// its rulings. Of a mesh it is the direction of the principal curvature that is smaller in size.
+/// A developable surface has one principal curvature that is zero, and straight lines in it along that
+/// direction, its rulings. Of a mesh it is the direction of the principal curvature that is smaller in size.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ruling {
-    /// Unit vector along the ruling, in the plane of the face. Of both directions it is the one whose component of
-    /// largest size is positive (of components of equal size the first one).
+    /// Unit vector along the ruling, in the plane of the face. Of both directions it is the one whose
+    /// component of largest size is positive (of components of equal size the first one).
     pub direction: [f64; 3],
-    /// The principal curvature across the ruling, 1/m: positive where the sheet is a valley as seen from the side
-    /// from which faces are counter-clockwise.
+    /// The principal curvature across the ruling, 1/m: positive where the sheet is a valley as seen from the
+    /// side from which faces are counter-clockwise.
     pub curvature: f64,
 }
 
-/// Part of `(kappa h)^2` by which an arc over the length `h` is longer than its chord, as a factor: a chord of an arc
-/// of the angle `a` is shorter by `a^2 / 24`.
+/// Part of `(kappa h)^2` by which an arc over the length `h` is longer than its chord, as a factor: a chord
+/// of an arc of the angle `a` is shorter by `a^2 / 24`.
 const SHORTENING: f64 = 24.0;
 
 impl Ruling {
-    /// Of a face with its corners (counter-clockwise, metres) and its second fundamental form `(k11, k12, k22)`, 1/m:
-    /// the second derivatives of the surface along the normal of the face, by lengths along the first edge of the
-    /// face and, counter-clockwise from it, across. `strain` is the relative error of the lengths of edges.
+    /// Of a face with its corners (counter-clockwise, metres) and its second fundamental form
+    /// `(k11, k12, k22)`, 1/m: the second derivatives of the surface along the normal of the face, by lengths
+    /// along the first edge of the face and, counter-clockwise from it, across. `strain` is the relative
+    /// error of the lengths of edges.
     ///
     /// Nothing where there is no ruling beyond noise. With the longest edge `h` of the face and its principal
     /// curvatures `k1`, `k2`, `|k1| >= |k2|`, there is one if
@@ -32,10 +34,10 @@ impl Ruling {
     /// |k1| - |k2| > (24 strain)^(1/2) / h + |k1| (k1 h)^2.
     /// ```
     ///
-    /// The first term is the curvature that an error of the length may hide: a chord of an arc of the angle `a` is
-    /// shorter by the part `a^2 / 24`. The second one is the order of the error of curvatures that are fitted to
-    /// positions with the spacing `h`. So a flat face has none, nor have a sphere and an umbilic, where both
-    /// curvatures are alike, nor a sharp fold, by a radian and more over a face.
+    /// The first term is the curvature that an error of the length may hide: a chord of an arc of the angle
+    /// `a` is shorter by the part `a^2 / 24`. The second one is the order of the error of curvatures that are
+    /// fitted to positions with the spacing `h`. So a flat face has none, nor have a sphere and an umbilic,
+    /// where both curvatures are alike, nor a sharp fold, by a radian and more over a face.
     ///
     /// ```
     /// use isosheet_mesh::Ruling;
@@ -89,8 +91,8 @@ pub fn principal_values([k11, k12, k22]: [f64; 3]) -> [f64; 2] {
     [first, 2.0 * mean - first]
 }
 
-/// Unit vectors in the plane of a face: along its first edge, and counter-clockwise across; nothing of one without an
-/// area.
+/// Unit vectors in the plane of a face: along its first edge, and counter-clockwise across; nothing of one
+/// without an area.
 fn axes([a, b, c]: &[[f64; 3]; 3]) -> Option<[Vec3; 2]> {
     let base = sub(*b, *a);
     let normal = cross(base, sub(*c, *a));

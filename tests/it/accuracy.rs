@@ -48,8 +48,9 @@ fn square() -> Sheet {
     generate::isotropic_square(2, 0.2).expect("a square")
 }
 
-/// The error of a sub-step is of order `p + 1` in its length for a method of order `p`, that of a motion of order `p`. With
-/// `2^(p+1)` times less of the first one sub-steps are halved, and of the second one a part `2^-p` is left.
+/// The error of a sub-step is of order `p + 1` in its length for a method of order `p`, that of a motion of
+/// order `p`. With `2^(p+1)` times less of the first one sub-steps are halved, and of the second one a part
+/// `2^-p` is left.
 #[test]
 fn the_error_of_a_motion_follows_the_accuracy_by_the_order_of_the_method() {
     let problem = Pendulum::default();

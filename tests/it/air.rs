@@ -83,8 +83,8 @@ fn a_flat_card_approaches_its_terminal_speed_at_the_order_of_the_method() {
     for (name, method) in methods() {
         let errors = [32, 64, 128].map(|steps| fall_errors(&method, steps));
         let order = |k: usize| (errors[1][k] / errors[2][k]).log2();
-        // RATTLE foretells velocities at the end of a step to second order: its composition, of fourth order where no
-        // force depends on velocities, is of third order here.
+        // RATTLE foretells velocities at the end of a step to second order: its composition, of fourth order
+        // where no force depends on velocities, is of third order here.
         let want = match name {
             "implicit Euler" => 1.0,
             "RATTLE composition" => 3.0,

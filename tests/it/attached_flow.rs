@@ -20,8 +20,8 @@ fn flag() -> Flag {
     }
 }
 
-/// Of pipes that convey a fluid, with the speed in units of `sqrt(B / M) / L`: Gregory and Paidoussis, Proc. R.
-/// Soc. A 293, 1966, read off their Fig. 2 to one part in fifty.
+/// Of pipes that convey a fluid, with the speed in units of `sqrt(B / M) / L`: Gregory and Paidoussis, Proc.
+/// R. Soc. A 293, 1966, read off their Fig. 2 to one part in fifty.
 #[test]
 fn the_theory_of_slender_flags_is_that_of_pipes() {
     for (share, published) in [(0.1, 4.75), (0.2, 5.6), (0.5, 9.3)] {
@@ -39,8 +39,8 @@ fn the_theory_of_slender_flags_is_that_of_pipes() {
     }
 }
 
-/// Flutter begins at the wind of the theory of slender bodies: below it a flag comes to rest, above it a small
-/// deflection grows, and the growth rate is zero within 15 %.
+/// Flutter begins at the wind of the theory of slender bodies: below it a flag comes to rest, above it a
+/// small deflection grows, and the growth rate is zero within 15 %.
 #[test]
 fn a_slender_flag_flutters_in_the_wind_of_the_theory() {
     let threshold = slender_threshold(flag());
@@ -146,10 +146,10 @@ fn place(run: &Simulation) -> [f64; 3] {
     [0, 1, 2].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64)
 }
 
-/// A glider comes down by the ratio of its lift and drag. Its wing has the lift of Helmbold, a bent-up flap of a
-/// quarter of the chord takes 0.61 of its angle off (Glauert, "Aerofoil and airscrew theory", 1926), and as the
-/// suction of the sharp leading edge is lost, the drag of lift is that of a force across the wing. With all of that
-/// suction the ratio would be that of an elliptic wing. In separated flow it dives.
+/// A glider comes down by the ratio of its lift and drag. Its wing has the lift of Helmbold, a bent-up flap
+/// of a quarter of the chord takes 0.61 of its angle off (Glauert, "Aerofoil and airscrew theory", 1926), and
+/// as the suction of the sharp leading edge is lost, the drag of lift is that of a force across the wing.
+/// With all of that suction the ratio would be that of an elliptic wing. In separated flow it dives.
 #[test]
 fn a_wing_glides_by_its_lift() {
     let glider = Glider {

@@ -24,8 +24,8 @@ fn at_rest(model: SheetModel, sheet: &Sheet, seconds: f64) -> Simulation {
     run
 }
 
-/// A poster off a roll of 5 cm, which is flat at first and begins to curl: it ends as that roll. All its cells
-/// bend alike.
+/// A poster off a roll of 5 cm, which is flat at first and begins to curl: it ends as that roll. All its
+/// cells bend alike.
 #[test]
 fn a_poster_curls_to_its_roll() {
     let (length, radius, cells) = (0.24, 0.05, 24);
@@ -75,7 +75,8 @@ fn a_poster_curls_to_its_roll() {
     }
 }
 
-/// A narrow strip that wants to be twisted alone becomes a helicoid: its end has turned by the twist times its length.
+/// A narrow strip that wants to be twisted alone becomes a helicoid: its end has turned by the twist times
+/// its length.
 #[test]
 fn a_narrow_strip_with_a_twist_is_a_helicoid() {
     let (length, width, twist) = (0.1, 0.004, 4.0);

@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// The rigidity of a narrow strip that is cut at an angle to the direction: one over the compliance in bending along it
-/// (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, section 62).
+/// The rigidity of a narrow strip that is cut at an angle to the direction: one over the compliance in
+/// bending along it (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, section 62).
 fn strip_rigidity(material: &Material, degrees: f64) -> f64 {
     let direction = MaterialDirection::Uniform([1.0, 0.0, 0.0]);
     let PlateLaw::Orthotropic(plate) = material.plate(Some(&direction)) else {
@@ -26,9 +26,10 @@ fn strip_rigidity(material: &Material, degrees: f64) -> f64 {
     1.0 / compliance
 }
 
-/// Narrow strips, whose sides are free to curl, that are cut along the warp, across it and between, and hang out of a clamp by twice their bending length
-/// `(D / w)^(1/3)`, so that the line from the clamp to the tip is inclined by 41.5 degrees (F. T. Peirce, "The handle of cloth as a
-/// measurable quantity", J. Text. Inst. 21, T377, 1930; ASTM D1388).
+/// Narrow strips, whose sides are free to curl, that are cut along the warp, across it and between, and hang
+/// out of a clamp by twice their bending length `(D / w)^(1/3)`, so that the line from the clamp to the tip
+/// is inclined by 41.5 degrees (F. T. Peirce, "The handle of cloth as a measurable quantity", J. Text. Inst.
+/// 21, T377, 1930; ASTM D1388).
 #[test]
 fn strips_of_cloth_and_paper_have_their_bending_lengths() {
     for (name, material) in [
@@ -91,9 +92,9 @@ fn strips_of_cloth_and_paper_have_their_bending_lengths() {
 const ALONG: usize = 6;
 const AROUND: usize = 4;
 
-/// How far a ring that is clamped at its inner circle hangs down at its outer one, metres, at an angle (radians) to the
-/// direction of the material, under a load per area: Ritz's method with `s^(i + 2) cos(2 j a)`, `s` from 0 to 1 across
-/// the ring.
+/// How far a ring that is clamped at its inner circle hangs down at its outer one, metres, at an angle
+/// (radians) to the direction of the material, under a load per area: Ritz's method with
+/// `s^(i + 2) cos(2 j a)`, `s` from 0 to 1 across the ring.
 fn ring_under_load(plate: &OrthotropicPlate, radii: [f64; 2], load: f64, angle: f64) -> f64 {
     let width = radii[1] - radii[0];
     let functions =
@@ -146,10 +147,10 @@ fn ring_under_load(plate: &OrthotropicPlate, radii: [f64; 2], load: f64, angle: 
     at_rim.map(|((_, wave), c)| c * (wave * angle).cos()).sum()
 }
 
-/// A disk of orthotropic paper on a round pedestal that holds its middle: how far the rim hangs down along the direction,
-/// across it and between, against Ritz's method for Kirchhoff's plate, clamped along the circle. (The drape of G. E.
-/// Cusick, "The dependence of fabric drape on bending and shear stiffness", J. Text. Inst. 56, T596, 1965, before it
-/// buckles to folds.)
+/// A disk of orthotropic paper on a round pedestal that holds its middle: how far the rim hangs down along
+/// the direction, across it and between, against Ritz's method for Kirchhoff's plate, clamped along the
+/// circle. (The drape of G. E. Cusick, "The dependence of fabric drape on bending and shear stiffness", J.
+/// Text. Inst. 56, T596, 1965, before it buckles to folds.)
 #[test]
 fn a_disk_on_a_pedestal_hangs_down_least_along_its_direction() {
     let (radius, pedestal, rings) = (0.15, 0.09, 20);

@@ -1,7 +1,7 @@
 //! How many factorisations scenes need.
 //!
-//! A wrong sign in a derivative of second order, or in what a step expects of the motions of bodies and supports,
-//! costs factorisations and changes nothing else. The bounds are a quarter above what was measured.
+//! A wrong sign in a derivative of second order, or in what a step expects of the motions of bodies and
+//! supports, costs factorisations and changes nothing else. The bounds are a quarter above what was measured.
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::{

@@ -1,12 +1,13 @@
-//! Forces and torques of all supports of elastic sheets, with weight, loads and inertia, add up to zero step by step.
+//! Forces and torques of all supports of elastic sheets, with weight, loads and inertia, add up to zero step
+//! by step.
 
 use isosheet_dynamics::{Method, Simulation, State};
 use isosheet_tests::damped_to;
 use isosheet_tests::held_strip::{G, HELD, Held, STEP, STEPS, held_strip, strip};
 use nalgebra::Vector3;
 
-/// Inertia `M a` of each vertex by the formula of the method, from velocities at the end of a step, at its start and a
-/// step before.
+/// Inertia `M a` of each vertex by the formula of the method, from velocities at the end of a step, at its
+/// start and a step before.
 fn inertia(method: &Method, masses: &[f64], [new, old, older]: [&[f64]; 3]) -> Vec<Vector3<f64>> {
     let at = |v: &[f64], i: usize| Vector3::from_column_slice(&v[3 * i..3 * i + 3]);
     let of = |i: usize| match method {
@@ -20,8 +21,8 @@ fn inertia(method: &Method, masses: &[f64], [new, old, older]: [&[f64]; 3]) -> V
         .collect()
 }
 
-/// Largest sums of forces and of torques in a run over the largest sums of their magnitudes; with what the simulation
-/// says of them itself.
+/// Largest sums of forces and of torques in a run over the largest sums of their magnitudes; with what the
+/// simulation says of them itself.
 fn left(held: Held, method: &Method, stiffness: f64) -> [f64; 4] {
     let model = held_strip(held, stiffness);
     let start = State::at_rest(strip().positions().to_vec());
@@ -75,8 +76,8 @@ fn left(held: Held, method: &Method, stiffness: f64) -> [f64; 4] {
     std::array::from_fn(|k| largest[k] / sizes[k])
 }
 
-/// The tolerance is one of an energy, which is quadratic in the forces that are left; what a strip of this stiffness
-/// leaves of the torque of the plate is of the order of its strain.
+/// The tolerance is one of an energy, which is quadratic in the forces that are left; what a strip of this
+/// stiffness leaves of the torque of the plate is of the order of its strain.
 #[test]
 fn all_supports_balance() {
     for tolerance in [1e-12, 1e-3_f64] {

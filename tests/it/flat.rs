@@ -111,7 +111,8 @@ fn leaving_flat_lets_conservative_methods_run() {
     }
 }
 
-/// In its own frame a sheet that falls freely is at rest, however large the acceleration is: nothing strains it.
+/// In its own frame a sheet that falls freely is at rest, however large the acceleration is: nothing strains
+/// it.
 #[test]
 fn free_fall_does_not_strain_an_elastic_sheet() {
     let sheet = bumped(3, 0.0);
@@ -129,8 +130,8 @@ fn free_fall_does_not_strain_an_elastic_sheet() {
                 let report = run.step(1.0 / 60.0).expect("accepted");
                 let fall = run.state().x[2].abs();
                 // A search ends at the round-off of the energies of weight and inertia, eight operations of
-                // 3/2 m d^2 for the way d, and all of that may be the motion of one vertex. (Faces resist strain
-                // more than masses do.)
+                // 3/2 m d^2 for the way d, and all of that may be the motion of one vertex. (Faces resist
+                // strain more than masses do.)
                 let energies = 8.0 * f64::EPSILON * 1.5 * (sheet.positions().len() / 3) as f64;
                 let round_off = energies.sqrt() * fall;
                 let strain = report.strain;

@@ -87,8 +87,8 @@ fn bending(sheet: &Sheet, x: &[f64]) -> f64 {
 }
 
 /// A closed surface turns as Euler's rigid body, about no principal axis, and does not bend. Moving a vertex
-/// inside a flat side by `d` strains its rods by `d^2`, so that lengths determine positions to the square root
-/// of the strain there; the conservative methods, which need unique forces of rods, refuse such a box.
+/// inside a flat side by `d` strains its rods by `d^2`, so that lengths determine positions to the square
+/// root of the strain there; the conservative methods, which need unique forces of rods, refuse such a box.
 #[test]
 fn closed_meshes_turn_as_eulers_rigid_body() {
     let (spin, h, steps) = ([1.0, 3.0, 0.5], 2e-3, 500);
@@ -140,8 +140,9 @@ fn crossing(start_angle: f64) -> (Flap, SheetModel, State) {
     (flap, model, State::moving(with_middle(&x), with_middle(&v)))
 }
 
-/// Folded along one of two crossing lines the sheet swings through flat, where it could as well fold along the
-/// other one: by inertia it goes on along the first, at the order of the method. The same from exactly there.
+/// Folded along one of two crossing lines the sheet swings through flat, where it could as well fold along
+/// the other one: by inertia it goes on along the first, at the order of the method. The same from exactly
+/// there.
 #[test]
 fn a_fold_passes_a_branch_point() {
     for ((name, method), order) in methods() {
@@ -257,8 +258,8 @@ fn a_cloth_has_the_same_bits_on_any_number_of_threads() {
     assert!([2, 4].iter().all(|&threads| on(threads) == one));
 }
 
-/// A film with a plate, of as many vertices as whole steps are shared from, that touches a ball and itself: faces,
-/// points, products, pairs and factorisations are shared among threads that stay awake.
+/// A film with a plate, of as many vertices as whole steps are shared from, that touches a ball and itself:
+/// faces, points, products, pairs and factorisations are shared among threads that stay awake.
 #[test]
 fn a_film_has_the_same_bits_on_any_number_of_threads() {
     let film = || {

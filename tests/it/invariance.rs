@@ -74,8 +74,8 @@ impl Scene {
         State::at_rest(self.x.iter().flat_map(|p| [p.x, p.y, p.z]).collect())
     }
 
-    /// `(w h)^2` for the fastest oscillation that rods allow while nothing moves: the lightest vertex across the
-    /// shortest rod under a tension `F` of all weights and loads, `w^2 = F / (m l)`.
+    /// `(w h)^2` for the fastest oscillation that rods allow while nothing moves: the lightest vertex across
+    /// the shortest rod under a tension `F` of all weights and loads, `w^2 = F / (m l)`.
     fn squared_phase(&self) -> f64 {
         let loads = self.loads.iter().zip(&self.masses);
         let tension: f64 = loads.map(|(f, m)| (*m * self.gravity + f).norm()).sum();
@@ -92,8 +92,8 @@ impl Scene {
         tension * self.h * self.h / inertia
     }
 
-    /// `(w h)^2` for the fastest oscillation of a vertex across its rods under their forces in the last step, `w^2
-    /// = sum |F| / (m l)`: levers pull with more than the loads.
+    /// `(w h)^2` for the fastest oscillation of a vertex across its rods under their forces in the last step,
+    /// `w^2 = sum |F| / (m l)`: levers pull with more than the loads.
     fn squared_phase_of(&self, run: &Simulation) -> f64 {
         let forces = run.rod_forces().expect("a method that solves for them");
         let rods = run.model().rods();
@@ -255,8 +255,8 @@ const STEPS: usize = 15;
 const CASES: u32 = 40;
 
 /// Largest distance, relative to the size of the sheet, after [`STEPS`] between motions that differ by
-/// round-off alone: each step may use the tolerance of the lengths anew, and what it used goes on as a velocity in all
-/// that follow.
+/// round-off alone: each step may use the tolerance of the lengths anew, and what it used goes on as a
+/// velocity in all that follow.
 const ROUND_OFF: f64 = (STEPS * (STEPS + 1) / 2) as f64 * 1e-12;
 
 #[test]

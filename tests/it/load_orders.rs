@@ -8,8 +8,8 @@ use isosheet_dynamics::{
 use isosheet_tests::pushed::{DependsOn, END, MASS, SIZE, bare, exact, loads, start, triangle};
 use isosheet_tests::{methods, orders};
 
-/// Error of position and velocity at the end of a run, relative to the exact ones: the larger one, since each may pass
-/// through zero as steps get shorter.
+/// Error of position and velocity at the end of a run, relative to the exact ones: the larger one, since each
+/// may pass through zero as steps get shorter.
 fn error(run: &mut Simulation, steps: usize) -> f64 {
     for _ in 0..steps {
         let report = run.step(END / steps as f64).expect("accepted");
@@ -84,8 +84,8 @@ fn loads_of_time_keep_the_order_in_a_chart() {
     }
 }
 
-/// A release at a time that is no end of a step, a load that jumps within a thousandth of a second, and a pin that
-/// starts with a jump of its velocity: with the breaks of their functions the order is two.
+/// A release at a time that is no end of a step, a load that jumps within a thousandth of a second, and a pin
+/// that starts with a jump of its velocity: with the breaks of their functions the order is two.
 #[test]
 fn breaks_keep_the_order_of_bdf2() {
     let begin = 0.1234;
@@ -126,8 +126,9 @@ fn breaks_keep_the_order_of_bdf2() {
     assert!(without.iter().all(|e| *e > 1e-4), "{without:?}");
 }
 
-/// A card of an elastic sheet is shaken at 5 Hz from rest, `a = A sin(omega t)`: after a second, five periods, it is
-/// `A / omega` away. BDF2 itself is 10.6, 2.8 and 0.71 % off in steps of 1/60, 1/120 and 1/240 s.
+/// A card of an elastic sheet is shaken at 5 Hz from rest, `a = A sin(omega t)`: after a second, five
+/// periods, it is `A / omega` away. BDF2 itself is 10.6, 2.8 and 0.71 % off in steps of 1/60, 1/120 and 1/240
+/// s.
 #[test]
 fn a_card_that_is_shaken_from_rest_drifts_as_it_should() {
     let (size, frequency) = (10.0, 5.0);

@@ -284,9 +284,9 @@ fn plates_compress_the_gas() {
     );
 }
 
-/// A square pillow that is blown up approaches the volume of a tea bag from below as its mesh is refined: about
-/// `w^3 (1 / pi - 0.142 (1 - 10^-1))` for the width `w` (Robin, Mathematics Today 40, 2004), and no more than
-/// 0.217 `w^3`. Wrinkles that are finer than the mesh are missing.
+/// A square pillow that is blown up approaches the volume of a tea bag from below as its mesh is refined:
+/// about `w^3 (1 / pi - 0.142 (1 - 10^-1))` for the width `w` (Robin, Mathematics Today 40, 2004), and no
+/// more than 0.217 `w^3`. Wrinkles that are finer than the mesh are missing.
 #[test]
 fn a_pillow_approaches_the_volume_of_a_tea_bag() {
     let blown = |cells: usize| {

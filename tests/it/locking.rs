@@ -138,9 +138,9 @@ fn locks_are_told_in_moving_clamps_above_floors_and_where_sheets_hang_taut() {
     }
 }
 
-/// A sheet of rods that is pushed against a wall jams. Rounds of multipliers that rods which depend on each other
-/// do not have end early: in the mean a step takes no more than one restoration that fails, and a run that ends
-/// before its time says that the sheet locks.
+/// A sheet of rods that is pushed against a wall jams. Rounds of multipliers that rods which depend on each
+/// other do not have end early: in the mean a step takes no more than one restoration that fails, and a run
+/// that ends before its time says that the sheet locks.
 #[test]
 fn a_sheet_that_jams_is_moved_or_refused_with_bounded_effort() {
     const STARTS: u64 = 8;

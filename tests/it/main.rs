@@ -36,3 +36,4 @@ mod statics;
 mod stress;
 mod terms;
 mod watch;
+mod words;

@@ -1,5 +1,5 @@
-//! Rigid bodies that respond: four point masses with six rods, whose surface is carried by them, beside sheets
-//! that are elastic.
+//! Rigid bodies that respond: four point masses with six rods, whose surface is carried by them, beside
+//! sheets that are elastic.
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::contact::SurfacePoints;

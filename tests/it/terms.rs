@@ -1,5 +1,5 @@
-//! Terms of the objective, potentials and forces that are written outside: they move a sheet as theory says, or are refused
-//! with their names.
+//! Terms of the objective, potentials and forces that are written outside: they move a sheet as theory says,
+//! or are refused with their names.
 
 use isosheet_dynamics::term::{
     Barrier, BlockSink, Exchange, HessianPart, ImplicitForce, Iterate, StepStart, Term, Value,
@@ -135,8 +135,8 @@ impl Term for DragInStep {
     }
 }
 
-/// A fall in a drag that stops it within a twentieth of a step: as a term it has the order of the method, and as a plain
-/// force it is divided until it is right, or refused.
+/// A fall in a drag that stops it within a twentieth of a step: as a term it has the order of the method, and
+/// as a plain force it is divided until it is right, or refused.
 #[test]
 fn stiff_drag_is_a_term_or_is_divided() {
     let sheet = square();
@@ -251,7 +251,8 @@ fn a_barrier_from_outside_holds_a_sheet() {
         run.step(step).expect("a step");
         assert!(heights(&run.state().x).all(|z| z > 0.0));
     }
-    // The sum of k / z over the vertices is the weight; masses at corners are less, and those vertices higher.
+    // The sum of k / z over the vertices is the weight; masses at corners are less, and those vertices
+    // higher.
     let push: f64 = heights(&run.state().x).map(|z| k / z).sum();
     assert!((push / (MASS * G) - 1.0).abs() < 1e-3, "{push} {vertices}");
 }
@@ -349,8 +350,8 @@ fn what_is_not_a_number_is_named() {
     }
 }
 
-/// A gradient that is 1 % too large is told by the check of derivatives, and one that no search succeeds with by the
-/// error.
+/// A gradient that is 1 % too large is told by the check of derivatives, and one that no search succeeds with
+/// by the error.
 #[test]
 fn a_gradient_that_is_no_derivative_is_found() {
     let sheet = square();

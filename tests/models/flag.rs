@@ -84,7 +84,8 @@ impl Flag {
         (model, start)
     }
 
-    /// Growth rate of the largest deflections of the free end, over the last two of some periods of the mode that
+    /// Growth rate of the largest deflections of the free end, over the last two of some periods of the mode
+    /// that
     /// [`slender`] expects, with so many steps a period.
     ///
     /// # Panics
@@ -126,8 +127,8 @@ pub struct Mode {
 /// Modes of a clamped beam in the method of Galerkin.
 const MODES: usize = 8;
 
-/// The mode that grows fastest of a slender flag, whose air moves along in slices (Lighthill, J. Fluid Mech. 9,
-/// 1960): with the mass of the plate `m` and of the air `M = pi H^2 / 4` per length,
+/// The mode that grows fastest of a slender flag, whose air moves along in slices (Lighthill, J. Fluid Mech.
+/// 9, 1960): with the mass of the plate `m` and of the air `M = pi H^2 / 4` per length,
 ///
 /// ```text
 /// B w'''' + m w_tt + M (d/dt + U d/dx)^2 w = 0,

@@ -1,8 +1,8 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
 //! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for [`bumped`]
-//! and [`bent`] sheets, for [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest:
-//! [`Elastica`], [`buckled`] strips and [`ExcessCone`]. [`pushed`] has loads of all kinds with the exact motion, and
-//! [`held_strip`] all kinds of supports, whose forces have to balance.
+//! and [`bent`] sheets, for [`RigidBody`], which gives the motion of any sheet that cannot bend, and for
+//! states of rest: [`Elastica`], [`buckled`] strips and [`ExcessCone`]. [`pushed`] has loads of all kinds
+//! with the exact motion, and [`held_strip`] all kinds of supports, whose forces have to balance.
 
 mod bent;
 mod buckled;

@@ -1,7 +1,7 @@
 //! A triangle that loads of all kinds move along its normal, by `a(t) = A (mean + sin(omega t + phase))`.
 //!
-//! Forces, accelerations and pressures are functions of time, the wind is that whose drag accelerates the triangle so,
-//! and forces of positions and velocities pull it back to the exact motion.
+//! Forces, accelerations and pressures are functions of time, the wind is that whose drag accelerates the
+//! triangle so, and forces of positions and velocities pull it back to the exact motion.
 
 use isosheet_dynamics::{
     AccelerationField, Air, At, Force, LoadedFaces, Potential, Profile, SheetModel, State,
@@ -31,7 +31,8 @@ pub const END: f64 = 0.5;
 const RATE: f64 = 3.0;
 const SPRING: f64 = 20.0;
 
-/// Position, velocity and acceleration along z at a time, seconds: metres, and per second and per second squared.
+/// Position, velocity and acceleration along z at a time, seconds: metres, and per second and per second
+/// squared.
 pub fn exact(t: f64) -> [f64; 3] {
     let (w, phase) = (TAU * FREQUENCY, TAU * FREQUENCY * t + PHASE);
     let (sin, cos) = PHASE.sin_cos();

@@ -38,8 +38,8 @@ pub fn laguerre_zeros(n: usize) -> Vec<f64> {
     zeros
 }
 
-/// The faces of a strip of rows of two vertices, `rows` of them below the first: each of its quadrilaterals is
-/// cut by a diagonal.
+/// The faces of a strip of rows of two vertices, `rows` of them below the first: each of its quadrilaterals
+/// is cut by a diagonal.
 pub fn strip_faces(rows: u32) -> Vec<[u32; 3]> {
     let between = |row: u32| {
         let i = 2 * row;

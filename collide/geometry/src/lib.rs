@@ -142,7 +142,7 @@ pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use crossings::{crossings, crossings_between, pierces};
 pub use distance::{Closest, Feature, Jet};
 pub use nalgebra;
-pub use rigid_path::{Course, RigidPath};
+pub use rigid_path::{PointCourse, RigidPath};
 pub use shapes::{
     ContactGeometry, Form, Moments, Shape, ShapeError, Skin, SurfaceError, Symmetry,
     TriangleSurface, Triangles, rounded_line,

@@ -39,7 +39,7 @@ pub struct RigidPath {
 
 /// A point on a straight line at a constant speed, relative to a rigid body that [moves](RigidPath).
 #[derive(Debug, Clone, Copy)]
-pub struct Course {
+pub struct PointCourse {
     /// Offset from the body's origin in space, and its rate.
     offset: Vector3<f64>,
     rate: Vector3<f64>,
@@ -79,7 +79,7 @@ impl RigidPath {
     /// In the body's frame the point is at `p = Q^T y` with `y` linear in time and `Q' = [w] Q`, so
     /// `p'' = Q^T (w x (w x y) - 2 w x y')`, which is bounded.
     #[inline]
-    pub fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> Course {
+    pub fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> PointCourse {
         let (offset, rate) = (x - self.origin, dx - self.shift);
         let w = &self.turn;
         let bend = if *w == Vector3::zeros() {
@@ -88,7 +88,7 @@ impl RigidPath {
             let spin = |y: &Vector3<f64>| w.cross(y).norm();
             2.0 * spin(&rate) + w.norm() * spin(&offset).max(spin(&(offset + rate)))
         };
-        Course { offset, rate, bend }
+        PointCourse { offset, rate, bend }
     }
 
     /// Largest distance of a point of the body at radius `r` from the chord of its path in space,
@@ -109,7 +109,7 @@ impl RigidPath {
     }
 
     /// Positions and velocities of points in the body's frame.
-    fn at<const N: usize>(&self, courses: &[Course; N], time: f64) -> [[Vector3<f64>; N]; 2] {
+    fn at<const N: usize>(&self, courses: &[PointCourse; N], time: f64) -> [[Vector3<f64>; N]; 2] {
         let axes = self.body_axes(time);
         let y = courses.map(|c| c.offset + time * c.rate);
         [
@@ -120,7 +120,7 @@ impl RigidPath {
 
     /// Where a point is at the start, in the body's frame, metres.
     #[inline]
-    pub fn now(&self, course: &Course) -> Vector3<f64> {
+    pub fn now(&self, course: &PointCourse) -> Vector3<f64> {
         self.frame.tr_mul(&course.offset)
     }
 
@@ -137,7 +137,7 @@ impl RigidPath {
     pub fn advance<const N: usize>(
         &self,
         options: &CcdOptions,
-        courses: &[Course; N],
+        courses: &[PointCourse; N],
         limit: f64,
         support: impl Fn(&[Vector3<f64>; N]) -> (Vector3<f64>, f64),
     ) -> f64 {
@@ -178,7 +178,7 @@ impl RigidPath {
     }
 }
 
-impl Course {
+impl PointCourse {
     /// Bound on the distance from the place at the start during the motion, in the body's frame, metres:
     /// chord and bulge.
     #[inline]

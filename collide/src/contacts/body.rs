@@ -11,13 +11,13 @@ const SAME_AXIS: f64 = 1e-14;
 
 /// A body of a scene.
 #[derive(Debug, Clone)]
-pub(super) struct Body {
+pub(super) struct ContactBody {
     obstacle: Obstacle,
     number: u32,
     features: Option<Features>,
 }
 
-impl Body {
+impl ContactBody {
     pub(super) fn new(
         obstacle: Obstacle,
         number: u32,

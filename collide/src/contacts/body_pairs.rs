@@ -1,6 +1,6 @@
 //! The pairs of the sheet and one body.
 
-use super::body::Body;
+use super::body::ContactBody;
 use super::features::Features;
 use super::limit::{Limit, for_each_near};
 use super::motion::SheetMotion;
@@ -8,10 +8,10 @@ use super::neighbours::Neighbours;
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use isosheet_geometry::distance::{Closest, edge_edge, point_triangle};
 use isosheet_geometry::vectors::{gather, smaller};
-use isosheet_geometry::{Course, RigidPath};
+use isosheet_geometry::{PointCourse, RigidPath};
 use nalgebra::Vector3;
 
-impl Body {
+impl ContactBody {
     /// Appends the pairs within reach on the motion of the sheet and the given part of the body's, and
     /// shortens the part of it that brings nothing into contact. `neighbours` are those of the motion; `near`
     /// is room.
@@ -165,7 +165,7 @@ impl Check<'_> {
     fn is_near<const N: usize>(
         &self,
         vertex: u32,
-        courses: &[Course; N],
+        courses: &[PointCourse; N],
         support: impl Fn(&[Vector3<f64>; N]) -> (Vector3<f64>, f64),
     ) -> bool {
         let clearance = self.sheet.of_obstacle(vertex);

@@ -1,6 +1,6 @@
 //! Distances, normals and weights of pairs at given positions.
 
-use super::body::Body;
+use super::body::ContactBody;
 use super::features::Features;
 use super::rolling::{edge_gradient, face_gradients};
 use super::round::Rounds;
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 
 /// The sheet at given positions.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sheet<'a> {
+pub(super) struct SheetAt<'a> {
     pub(super) mesh: &'a ContactMesh,
     pub(super) rounds: &'a Rounds,
     pub(super) x: &'a [f64],
@@ -29,11 +29,11 @@ pub(super) struct Sheet<'a> {
 /// A body in its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed<'a> {
-    pub(super) body: &'a Body,
+    pub(super) body: &'a ContactBody,
     pub(super) place: &'a BodyPlace,
 }
 
-impl Sheet<'_> {
+impl SheetAt<'_> {
     /// The contact of a pair of the sheet with itself; `None` out of reach.
     pub(super) fn with_itself(&self, key: ContactKey) -> Option<ActiveContact> {
         if key.kind == ContactKind::EdgeEdge {

@@ -3,11 +3,12 @@
 use isosheet_linalg::parallel::{Work, in_order};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Nanoseconds for a pair that may come near, estimated: it decides what is shared among threads, and no result.
+/// Nanoseconds for a pair that may come near, estimated: it decides what is shared among threads, and no
+/// result.
 const PAIR_TIME: f64 = 40.0;
 
-/// The part of a motion, from 0 to 1, that all pairs looked at so far allow: the smallest of what each of them allows,
-/// in whatever order they are.
+/// The part of a motion, from 0 to 1, that all pairs looked at so far allow: the smallest of what each of
+/// them allows, in whatever order they are.
 #[derive(Debug)]
 pub(super) struct Limit(AtomicU64);
 

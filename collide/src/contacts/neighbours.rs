@@ -1,6 +1,6 @@
 //! Lists of neighbours that serve many motions.
 
-use super::body::Body;
+use super::body::ContactBody;
 use super::displacements::Displacements;
 use super::motion::SheetMotion;
 use isosheet_geometry::distance::{edge_edge, point_triangle};
@@ -121,7 +121,7 @@ impl Neighbours {
     pub(super) fn update(
         &mut self,
         sheet: SheetMotion<'_>,
-        bodies: &mut [Body],
+        bodies: &mut [ContactBody],
         parts: &[RigidPath],
     ) {
         let SheetMotion { x, dx, reach, .. } = sheet;
@@ -158,7 +158,7 @@ impl Neighbours {
     }
 
     /// Whether the motion from `x` to the end leaves the boxes of the lists by no more than the skin.
-    fn is_within_skin(&self, x: &[f64], bodies: &[Body]) -> bool {
+    fn is_within_skin(&self, x: &[f64], bodies: &[ContactBody]) -> bool {
         let [start, end, _] = &self.listed;
         let sheet = Displacements::beyond([start, end], x, &self.end);
         // Of a pair of the sheet with itself both boxes are enlarged by the skin, of a pair with a body only
@@ -167,14 +167,14 @@ impl Neighbours {
             SelfPairs::Listed => 0.5 * sheet.relative_to(&sheet),
             SelfPairs::Ignored => 0.0,
         };
-        let of_bodies = bodies.iter().filter_map(Body::features);
+        let of_bodies = bodies.iter().filter_map(ContactBody::features);
         let displacements = of_bodies.map(|f| sheet.relative_to(f.displacements()) + f.growth());
         // Not a number, and so not within the skin, where a coordinate is not.
         displacements.fold(itself, larger) <= USED * self.skin
     }
 
     /// Makes the lists for motions like that of the sheet.
-    fn list(&mut self, sheet: SheetMotion<'_>, bodies: &mut [Body]) {
+    fn list(&mut self, sheet: SheetMotion<'_>, bodies: &mut [ContactBody]) {
         let SheetMotion { mesh, x, reach, .. } = sheet;
         let [start, end, middle] = &mut self.listed;
         start.copy_from_slice(x);

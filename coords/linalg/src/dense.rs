@@ -113,9 +113,10 @@ fn factorise_columns<S: Simd, const N: usize>(
     Ok(())
 }
 
-/// Sets the lower triangle of some columns of the square matrix `-B B^T` of a size, where `B` is what columns of `height`
-/// values have in their last rows; `out` begins with the first of them. What is above the diagonal has no meaning. The
-/// first column and the one after the last are multiples of [`TOGETHER`], or all that are left.
+/// Sets the lower triangle of some columns of the square matrix `-B B^T` of a size, where `B` is what columns
+/// of `height` values have in their last rows; `out` begins with the first of them. What is above the
+/// diagonal has no meaning. The first column and the one after the last are multiples of [`TOGETHER`], or all
+/// that are left.
 #[inline(always)]
 pub(super) fn square<S: Simd>(
     simd: S,

@@ -6,9 +6,9 @@
 //! that are kept. Entries are addressed by the *slots* that [`Pattern::from_entries`]
 //! returns, so assembling is a plain scatter-add.
 //!
-//! faer's generic code is instantiated only here, which keeps the build of every crate
-//! above short. Large Cholesky factorisations are shared among the threads of rayon's current pool, and so
-//! are lists that are filled by [`parallel`]; all else runs sequentially. Results do not depend on the number of threads.
+//! faer's generic code is instantiated only here, which keeps the build of every crate above short. Large
+//! Cholesky factorisations are shared among the threads of rayon's current pool, and so are lists that are
+//! filled by [`parallel`]; all else runs sequentially. Results do not depend on the number of threads.
 
 mod dense;
 mod dense_lu;

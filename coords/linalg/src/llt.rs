@@ -147,7 +147,8 @@ impl SparseLlt {
         &self.factor
     }
 
-    /// Solves `A x = b` in place with the current factor, shared among threads as [factorisations](Self::factorize).
+    /// Solves `A x = b` in place with the current factor, shared among threads as
+    /// [factorisations](Self::factorize).
     pub fn solve(&mut self, rhs: &mut [f64]) {
         match (&mut self.fronts, self.symbolic.perm()) {
             (Some(fronts), Some(perm)) => fronts.solve(perm.arrays().0, &self.factor, rhs),

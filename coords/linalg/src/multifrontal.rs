@@ -17,7 +17,7 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use plan::{Front, Plan, Subtree, WORTH_SHARING};
 use pulp::{Arch, Simd, WithSimd};
-use shared::{Job, Part};
+use shared::{FrontValues, Job};
 use triangular::Factor;
 
 /// The plan of a factorisation, with working memory.
@@ -113,7 +113,7 @@ impl Job<2> for Branches<'_> {
         [subtree.values.start, subtree.updates.start]
     }
 
-    fn run(&self, subtree: &Subtree, [factor, updates]: [Part<'_>; 2]) -> Result<(), usize> {
+    fn run(&self, subtree: &Subtree, [factor, updates]: [FrontValues<'_>; 2]) -> Result<(), usize> {
         Arch::new().dispatch(Branch {
             numbers: self.0,
             subtree,
@@ -212,8 +212,8 @@ impl Others<'_> {
 struct Branch<'a> {
     numbers: Numbers<'a>,
     subtree: &'a Subtree,
-    factor: Part<'a>,
-    updates: Part<'a>,
+    factor: FrontValues<'a>,
+    updates: FrontValues<'a>,
 }
 
 impl WithSimd for Branch<'_> {

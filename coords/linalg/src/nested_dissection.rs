@@ -4,7 +4,7 @@
 //! minimum degree, 193 ms in place of 264 ms with the couplings of plate bending; on 4 225 vertices as long.
 
 use super::graph::Graph;
-use super::separator::{Part, separate};
+use super::separator::{SeparatorSide, separate};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
@@ -57,11 +57,11 @@ impl Dissection<'_> {
                 .filter(|&v| parts[v as usize] == p)
                 .collect()
         };
-        for side in [Part::First, Part::Second] {
+        for side in [SeparatorSide::First, SeparatorSide::Second] {
             self.descend(part, &of(side), names);
         }
         self.order.extend(
-            of(Part::Separator)
+            of(SeparatorSide::Separator)
                 .iter()
                 .map(|&v| names[v as usize] as usize),
         );

@@ -64,8 +64,8 @@ fn best(graph: &Graph, block: usize) -> Vec<usize> {
     }
 }
 
-/// The number of entries in each column of the Cholesky factor, the diagonal among them, without the zeros that
-/// supernodes pad in, for groups of `block` unknowns that are each eliminated together.
+/// The number of entries in each column of the Cholesky factor, the diagonal among them, without the zeros
+/// that supernodes pad in, for groups of `block` unknowns that are each eliminated together.
 fn column_counts(graph: &Graph, order: &[usize], block: usize) -> impl Iterator<Item = f64> {
     let below = EliminationTree::new(graph, order).below.into_iter();
     below.flat_map(move |rows| (1..=block).map(move |k| (rows * block + k) as f64))

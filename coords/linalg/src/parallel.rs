@@ -7,15 +7,17 @@ mod awake;
 pub use awake::Awake;
 use rayon::prelude::*;
 
-/// Time of one thread, in nanoseconds, from which work is shared. To wake a thread that sleeps takes 0.1 ms: two threads
-/// need as long as one for what takes one thread 0.2 ms, and three quarters of the time for 0.4 ms.
+/// Time of one thread, in nanoseconds, from which work is shared. To wake a thread that sleeps takes 0.1 ms:
+/// two threads need as long as one for what takes one thread 0.2 ms, and three quarters of the time for 0.4
+/// ms.
 const WORTH_SHARING: f64 = 3e5;
 
 /// Time of one thread, in nanoseconds, from which work is shared where the other threads are awake, and take
 /// up work within some microseconds.
 const WORTH_SHARING_AWAKE: f64 = 3e4;
 
-/// Time of the smallest pieces that threads take from each other, nanoseconds. Each costs some hundred nanoseconds.
+/// Time of the smallest pieces that threads take from each other, nanoseconds. Each costs some hundred
+/// nanoseconds.
 const PIECE: f64 = 1e4;
 
 /// How many entries are computed, and how long each takes.
@@ -28,8 +30,8 @@ pub struct Work {
 }
 
 impl Work {
-    /// Whether it takes less time on several threads than on one, and this is one of the threads of a pool. (Any other
-    /// thread would sleep until those of the pool are done, and have to be woken, too.)
+    /// Whether it takes less time on several threads than on one, and this is one of the threads of a pool.
+    /// (Any other thread would sleep until those of the pool are done, and have to be woken, too.)
     pub fn is_shared(self) -> bool {
         let time = self.count as f64 * self.each;
         time >= WORTH_SHARING_AWAKE
@@ -44,8 +46,8 @@ impl Work {
     }
 }
 
-/// Makes `list` that of the entries `entry(0)`, `entry(1)` and so on. Allocates no memory where the list has had as
-/// many entries before.
+/// Makes `list` that of the entries `entry(0)`, `entry(1)` and so on. Allocates no memory where the list has
+/// had as many entries before.
 pub fn fill<T: Send>(list: &mut Vec<T>, work: Work, entry: impl Fn(usize) -> T + Sync) {
     if work.is_shared() {
         let entries = (0..work.count).into_par_iter().with_min_len(work.piece());
@@ -56,8 +58,8 @@ pub fn fill<T: Send>(list: &mut Vec<T>, work: Work, entry: impl Fn(usize) -> T +
     }
 }
 
-/// Hands the entries `entry(0)`, `entry(1)` and so on to `take` in this order; `room` holds them where they are computed
-/// on several threads.
+/// Hands the entries `entry(0)`, `entry(1)` and so on to `take` in this order; `room` holds them where they
+/// are computed on several threads.
 pub fn in_order<T: Send>(
     room: &mut Vec<T>,
     work: Work,
@@ -74,8 +76,8 @@ pub fn in_order<T: Send>(
     }
 }
 
-/// Cuts a list into a piece for each thread, and hands each to `change` with the number of its first entry. Where pieces
-/// begin and end must not matter to what becomes of the entries.
+/// Cuts a list into a piece for each thread, and hands each to `change` with the number of its first entry.
+/// Where pieces begin and end must not matter to what becomes of the entries.
 pub fn pieces<T: Send>(list: &mut [T], each: f64, change: impl Fn(usize, &mut [T]) + Sync) {
     let count = list.len();
     if !(Work { count, each }).is_shared() {

@@ -4,7 +4,7 @@ use super::graph::{Graph, UNREACHED};
 
 /// Where a separator puts a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum SeparatorSide {
     /// One side.
     First,
     /// The other side, without a neighbour in the first.
@@ -25,7 +25,7 @@ const GIVEN: f64 = 0.3;
 /// to `d_d` from them, vertices are sorted by `d_a - d_b`, `d_a + d_c - d_b - d_d` and so on, the first and
 /// the last [`GIVEN`] are joined to a source and a sink, and a maximum flow with unit vertex capacities
 /// between them finds the minimum vertex cut (Menger). `None` if a side would be empty.
-pub(super) fn separate(graph: &Graph) -> Option<Vec<Part>> {
+pub(super) fn separate(graph: &Graph) -> Option<Vec<SeparatorSide>> {
     let [a, b, c, d] = landmarks(graph);
     let key = |plus: [&[u32]; 2], minus: [&[u32]; 2]| -> Vec<i64> {
         (0..graph.len())
@@ -44,10 +44,10 @@ pub(super) fn separate(graph: &Graph) -> Option<Vec<Part>> {
     let mut best = None;
     let mut least = f64::INFINITY;
     for key in directions {
-        let parts = Cut::new(graph, &key).minimum();
+        let parts = MinimumCut::new(graph, &key).minimum();
         let count = |p| parts.iter().filter(|q| **q == p).count() as f64;
-        let (first, second) = (count(Part::First), count(Part::Second));
-        let cost = count(Part::Separator) / (first * second);
+        let (first, second) = (count(SeparatorSide::First), count(SeparatorSide::Second));
+        let cost = count(SeparatorSide::Separator) / (first * second);
         if first > 0.0 && second > 0.0 && cost < least {
             least = cost;
             best = Some(parts);
@@ -74,7 +74,7 @@ fn landmarks(graph: &Graph) -> [Vec<u32>; 4] {
 
 /// Which vertices the flow comes from, goes to, and may pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum BandRole {
     Source,
     Band,
     Sink,
@@ -86,9 +86,9 @@ const NONE: u32 = u32::MAX;
 /// Maximum flow of unit vertex capacities from a source to a sink set, by Dinic's blocking flows.
 ///
 /// Every vertex `v` of the band is a pair of nodes, `2 v` where flow enters and `2 v + 1` where it leaves.
-struct Cut<'a> {
+struct MinimumCut<'a> {
     graph: &'a Graph,
-    role: Vec<Role>,
+    role: Vec<BandRole>,
     /// Whether a unit of flow passes the vertex.
     used: Vec<bool>,
     /// From where it comes; `NONE` is the source.
@@ -107,31 +107,32 @@ fn is_entering(node: u32) -> bool {
     node.is_multiple_of(2)
 }
 
-impl<'a> Cut<'a> {
+impl<'a> MinimumCut<'a> {
     fn new(graph: &'a Graph, key: &[i64]) -> Self {
         let n = graph.len();
         let mut sorted: Vec<u32> = (0..n as u32).collect();
         sorted.sort_unstable_by_key(|&v| (key[v as usize], v));
         let given = ((GIVEN * n as f64) as usize).clamp(1, n / 2);
-        let mut role = vec![Role::Band; n];
+        let mut role = vec![BandRole::Band; n];
         for &v in &sorted[n - given..] {
-            role[v as usize] = Role::Sink;
+            role[v as usize] = BandRole::Sink;
         }
-        let beside = |role: &[Role], v: u32, r| graph.of(v).iter().any(|&w| role[w as usize] == r);
+        let beside =
+            |role: &[BandRole], v: u32, r| graph.of(v).iter().any(|&w| role[w as usize] == r);
         for &v in &sorted[..given] {
             // A vertex beside the sink has to be cut itself.
-            if !beside(&role, v, Role::Sink) {
-                role[v as usize] = Role::Source;
+            if !beside(&role, v, BandRole::Sink) {
+                role[v as usize] = BandRole::Source;
             }
         }
-        let band = |v: &u32| role[*v as usize] == Role::Band;
+        let band = |v: &u32| role[*v as usize] == BandRole::Band;
         Self {
             entries: (0..n as u32)
                 .filter(band)
-                .filter(|&v| beside(&role, v, Role::Source))
+                .filter(|&v| beside(&role, v, BandRole::Source))
                 .collect(),
             beside_sink: (0..n as u32)
-                .map(|v| band(&v) && beside(&role, v, Role::Sink))
+                .map(|v| band(&v) && beside(&role, v, BandRole::Sink))
                 .collect(),
             graph,
             role,
@@ -143,7 +144,7 @@ impl<'a> Cut<'a> {
     }
 
     /// The minimum cut nearest to the source.
-    fn minimum(mut self) -> Vec<Part> {
+    fn minimum(mut self) -> Vec<SeparatorSide> {
         while self.find_levels() {
             self.tried.fill(0);
             for k in 0..self.entries.len() {
@@ -155,11 +156,11 @@ impl<'a> Cut<'a> {
             .map(|v| {
                 let reached = |node: usize| self.level[node] != UNREACHED;
                 match self.role[v] {
-                    Role::Source => Part::First,
-                    Role::Sink => Part::Second,
-                    Role::Band if reached(2 * v + 1) => Part::First,
-                    Role::Band if reached(2 * v) => Part::Separator,
-                    Role::Band => Part::Second,
+                    BandRole::Source => SeparatorSide::First,
+                    BandRole::Sink => SeparatorSide::Second,
+                    BandRole::Band if reached(2 * v + 1) => SeparatorSide::First,
+                    BandRole::Band if reached(2 * v) => SeparatorSide::Separator,
+                    BandRole::Band => SeparatorSide::Second,
                 }
             })
             .collect()
@@ -182,7 +183,7 @@ impl<'a> Cut<'a> {
     /// The node at the end of an arc from a leaving node, if the arc has capacity left.
     fn after_leaving(&self, v: u32, arc: u32) -> Option<u32> {
         match self.graph.of(v).get(arc as usize) {
-            Some(&w) => (self.role[w as usize] == Role::Band).then_some(2 * w),
+            Some(&w) => (self.role[w as usize] == BandRole::Band).then_some(2 * w),
             // Flow through the vertex can be taken back.
             None => self.used[v as usize].then_some(2 * v),
         }
@@ -300,15 +301,19 @@ mod tests {
         Graph::from_edges(((w + 1) * (h + 1)) as usize, &edges)
     }
 
-    fn count(parts: &[Part], p: Part) -> usize {
+    fn count(parts: &[SeparatorSide], p: SeparatorSide) -> usize {
         parts.iter().filter(|q| **q == p).count()
     }
 
-    fn assert_separates(graph: &Graph, parts: &[Part]) {
+    fn assert_separates(graph: &Graph, parts: &[SeparatorSide]) {
         for v in 0..graph.len() as u32 {
             for &w in graph.of(v) {
                 let pair = (parts[v as usize], parts[w as usize]);
-                assert_ne!(pair, (Part::First, Part::Second), "{v} {w}");
+                assert_ne!(
+                    pair,
+                    (SeparatorSide::First, SeparatorSide::Second),
+                    "{v} {w}"
+                );
             }
         }
     }
@@ -318,8 +323,8 @@ mod tests {
         let graph = grid(60, 6);
         let parts = separate(&graph).expect("a strip can be separated");
         assert_separates(&graph, &parts);
-        assert_eq!(count(&parts, Part::Separator), 7);
-        for side in [Part::First, Part::Second] {
+        assert_eq!(count(&parts, SeparatorSide::Separator), 7);
+        for side in [SeparatorSide::First, SeparatorSide::Second] {
             assert!(count(&parts, side) >= (GIVEN * graph.len() as f64) as usize);
         }
     }
@@ -343,7 +348,7 @@ mod tests {
         let graph = Graph::from_edges(201, &edges);
         let parts = separate(&graph).expect("rooms can be separated");
         assert_separates(&graph, &parts);
-        assert_eq!(count(&parts, Part::Separator), 1);
+        assert_eq!(count(&parts, SeparatorSide::Separator), 1);
     }
 
     #[test]
@@ -364,21 +369,23 @@ mod tests {
             }
             let graph = Graph::from_edges(n as usize, &edges);
             let key: Vec<i64> = (0..i64::from(n)).collect();
-            let cut = Cut::new(&graph, &key);
+            let cut = MinimumCut::new(&graph, &key);
             let role = cut.role.clone();
             let parts = cut.minimum();
             assert_separates(&graph, &parts);
-            let band: Vec<usize> = (0..n as usize).filter(|&v| role[v] == Role::Band).collect();
+            let band: Vec<usize> = (0..n as usize)
+                .filter(|&v| role[v] == BandRole::Band)
+                .collect();
             let separates = |set: u32| {
                 let removed = |v: usize| {
                     band.iter()
                         .position(|&b| b == v)
                         .is_some_and(|k| set >> k & 1 == 1)
                 };
-                let mut seen: Vec<bool> = role.iter().map(|r| *r == Role::Source).collect();
+                let mut seen: Vec<bool> = role.iter().map(|r| *r == BandRole::Source).collect();
                 let mut stack: Vec<usize> = (0..n as usize).filter(|&v| seen[v]).collect();
                 while let Some(v) = stack.pop() {
-                    if role[v] == Role::Sink {
+                    if role[v] == BandRole::Sink {
                         return false;
                     }
                     for &w in graph.of(v as u32) {
@@ -394,7 +401,10 @@ mod tests {
                 .filter(|&set| separates(set))
                 .map(u32::count_ones)
                 .min();
-            assert_eq!(smallest, Some(count(&parts, Part::Separator) as u32));
+            assert_eq!(
+                smallest,
+                Some(count(&parts, SeparatorSide::Separator) as u32)
+            );
         }
     }
 }

@@ -53,6 +53,14 @@ pub enum RealiseError {
         /// The tolerance.
         tolerance: f64,
     },
+    /// Two edges meet elsewhere than in a common end.
+    #[error("{} and {} come within {} m of each other", edges[0], edges[1], brief(*distance))]
+    EdgesMeet {
+        /// The edges.
+        edges: [EdgeId; 2],
+        /// How close they come, metres.
+        distance: f64,
+    },
     /// A slice has the wrong length.
     #[error("{what} has {found} values, expected {expected}")]
     WrongLength {
@@ -96,6 +104,7 @@ impl Advice for RealiseError {
             Self::Tolerance { .. } => Some("give a value in this range"),
             Self::Incompatible { .. }
             | Self::Closure { .. }
+            | Self::EdgesMeet { .. }
             | Self::WrongLength { .. }
             | Self::NotFinite { .. } => None,
         }

@@ -45,8 +45,9 @@ proptest! {
         }
     }
 
-    /// Theorem 1 where no vertex has a fourth known neighbour: every choice of coordinates either has a realisation with
-    /// exact lengths or violates Eq. 10 at the edge named, from whatever vertex the assignment starts.
+    /// Theorem 1 where no vertex has a fourth known neighbour: every choice of coordinates either has a
+    /// realisation with exact lengths or violates Eq. 10 at the edge named, from whatever vertex the
+    /// assignment starts.
     #[test]
     fn realised_or_incompatible(
         level in 0..3u32, start in 0..25u32, free in prop::bool::ANY, seed in 0..50u64, turn in 0.0..1.5f64,
@@ -102,9 +103,9 @@ proptest! {
     }
 }
 
-/// The scope of Theorem 1: where a vertex has four known neighbours, three of them place it, by Eq. 10, and the length to
-/// the fourth is an equation between the coordinates. Other values of the coordinates satisfy Eq. 10 at every edge and
-/// have no realisation.
+/// The scope of Theorem 1: where a vertex has four known neighbours, three of them place it, by Eq. 10, and
+/// the length to the fourth is an equation between the coordinates. Other values of the coordinates satisfy
+/// Eq. 10 at every edge and have no realisation.
 #[test]
 fn eq_10_is_not_sufficient_where_a_vertex_has_four_known_neighbours() {
     let mut without = 0;

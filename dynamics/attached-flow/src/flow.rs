@@ -1,6 +1,6 @@
 //! The circulation of a lattice in the wind, and its forces.
 
-use super::lattice::{Lattice, Shape};
+use super::lattice::{Lattice, LatticeShape};
 use super::vortex::segment;
 use super::wake::Past;
 use isosheet_dynamics::Wind;
@@ -26,10 +26,10 @@ pub(super) struct InAir {
 /// n_i . (w + sum_j q_ij Gamma_j + wake - v_i) = 0.
 /// ```
 ///
-/// The row of the wake that the step sheds is part of the sum, so that no vortex is at the trailing edges (the
-/// condition of Kutta).
+/// The row of the wake that the step sheds is part of the sum, so that no vortex is at the trailing edges
+/// (the condition of Kutta).
 pub(super) struct Flow {
-    pub(super) shape: Shape,
+    pub(super) shape: LatticeShape,
     /// With the line that the step sheds.
     past: Past,
     matrix: DenseLu,
@@ -53,8 +53,8 @@ impl InAir {
         self.wind.velocity((*at).into(), t).into()
     }
 
-    /// The flow at a time (seconds) and positions (`3V`, metres) after a past that has been carried there, which
-    /// grows.
+    /// The flow at a time (seconds) and positions (`3V`, metres) after a past that has been carried there,
+    /// which grows.
     ///
     /// # Errors
     /// [`LinalgError::Singular`] where faces lie on each other or the wind is not finite.
@@ -115,8 +115,8 @@ impl InAir {
         circulation
     }
 
-    /// The derivatives of the circulation by the velocities of the vertices of the lattice: for each of these the
-    /// columns of its three components.
+    /// The derivatives of the circulation by the velocities of the vertices of the lattice: for each of these
+    /// the columns of its three components.
     pub(super) fn circulation_derivative(&self, flow: &Flow) -> Vec<f64> {
         let count = self.lattice.faces.len();
         let mut columns = vec![0.0; 3 * self.lattice.vertices.len() * count];
@@ -143,7 +143,7 @@ impl InAir {
     /// The forces on both ends of each ring edge by a unit of circulation along it (Kutta and Joukowski),
     /// newtons times seconds per square metre: the velocity of the air relative to the edge along the sheet,
     /// across the edge. Trailing edges have none.
-    pub(super) fn edge_forces(&self, shape: &Shape, t: f64, v: &[f64]) -> Vec<Vector3<f64>> {
+    pub(super) fn edge_forces(&self, shape: &LatticeShape, t: f64, v: &[f64]) -> Vec<Vector3<f64>> {
         let of_nodes = self.lattice.at_nodes(v);
         let force = |edge: &super::lattice::RingEdge| {
             if edge.is_trailing {
@@ -161,16 +161,16 @@ impl InAir {
         self.lattice.edges.iter().map(force).collect()
     }
 
-    /// The force on each corner of a face by the rate of change of its circulation, newtons times square seconds
-    /// per square metre.
-    pub(super) fn rate_force(&self, shape: &Shape, face: usize) -> Vector3<f64> {
+    /// The force on each corner of a face by the rate of change of its circulation, newtons times square
+    /// seconds per square metre.
+    pub(super) fn rate_force(&self, shape: &LatticeShape, face: usize) -> Vector3<f64> {
         -self.density * shape.areas[face] / 3.0 * shape.normals[face]
     }
 
     /// The forces on the vertices of the lattice, newtons.
     pub(super) fn forces(
         &self,
-        shape: &Shape,
+        shape: &LatticeShape,
         edge_forces: &[Vector3<f64>],
         circulation: &[f64],
         rate: &[f64],

@@ -1,13 +1,13 @@
 //! The lattice of vortex rings on the faces of a sheet.
 
 use super::error::AttachedFlowError;
-use crate::vectors::point;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Part of the height of a face at the boundary by which its ring ends inside of the boundary; at trailing edges
-/// it ends there, and its centre is that of a ring that ends outside.
+/// Part of the height of a face at the boundary by which its ring ends inside of the boundary; at trailing
+/// edges it ends there, and its centre is that of a ring that ends outside.
 ///
 /// Vortices at a quarter and no flow at three quarters of a panel make a plate of panels in a row exact
 /// (James, Comput. Methods Appl. Mech. Eng. 1, 1972); at the tips of a wing a quarter is best too (Hough, J.
@@ -59,7 +59,7 @@ pub(super) struct Lattice {
 
 /// A lattice in space.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Shape {
+pub(super) struct LatticeShape {
     /// Of the nodes, metres.
     pub(super) nodes: Vec<Vector3<f64>>,
     /// Of the faces.
@@ -216,16 +216,16 @@ impl Lattice {
     }
 
     /// Points of the trailing edges, metres.
-    pub(super) fn edge(&self, shape: &Shape) -> Vec<Vector3<f64>> {
+    pub(super) fn edge(&self, shape: &LatticeShape) -> Vec<Vector3<f64>> {
         let nodes = self.shedding.iter();
         nodes.map(|node| shape.nodes[*node]).collect()
     }
 
     /// The lattice at positions `x` (`3V`, metres).
-    pub(super) fn shape(&self, x: &[f64]) -> Shape {
+    pub(super) fn shape(&self, x: &[f64]) -> LatticeShape {
         let nodes = self.at_nodes(x);
         let probes = self.at_probes(x);
-        let mut shape = Shape::default();
+        let mut shape = LatticeShape::default();
         for (face, corners) in self.faces.iter().enumerate() {
             let [a, b, c] = corners.map(|k| nodes[k]);
             let across = (b - a).cross(&(c - a));
@@ -235,7 +235,7 @@ impl Lattice {
                 .push(across.try_normalize(0.0).unwrap_or_default());
             shape.areas.push(0.5 * across.norm());
         }
-        Shape { nodes, ..shape }
+        LatticeShape { nodes, ..shape }
     }
 
     /// Values of the probes at the centre of a face.
@@ -269,8 +269,8 @@ impl Mesh<'_> {
         self.lengths[edge.index()]
     }
 
-    /// The faces of the lattice around a vertex at its rim, in the order of their orientation from one rim edge
-    /// to the other one, each by its corners after the vertex; empty within the lattice.
+    /// The faces of the lattice around a vertex at its rim, in the order of their orientation from one rim
+    /// edge to the other one, each by its corners after the vertex; empty within the lattice.
     fn fan(&self, v: VertexId) -> Vec<[VertexId; 2]> {
         let own = |f: &&FaceId| self.numbers.contains_key(*f);
         let around = self.topology.vertex_faces(v).iter().filter(own);

@@ -6,7 +6,6 @@ mod lattice;
 mod step;
 #[cfg(test)]
 mod tests;
-mod vectors;
 mod vortex;
 mod wake;
 
@@ -36,8 +35,8 @@ impl AttachedFlow {
     /// The largest number of faces: a step solves a dense system of as many equations, and its matrix couples
     /// all vertices of these faces.
     pub const MOST_FACES: usize = 2000;
-    /// The largest number of rows of the wake, each of which takes part in the flow at every face: minutes of steps of
-    /// a hundredth of a second.
+    /// The largest number of rows of the wake, each of which takes part in the flow at every face: minutes of
+    /// steps of a hundredth of a second.
     pub const MOST_ROWS: usize = 10_000;
 
     /// The default of [`AttachedFlow::rows`].
@@ -61,9 +60,9 @@ impl Attached {
 
 impl AttachedFlow {
     /// Surrounds a sheet with air whose flow is attached to the faces: it flows along both sides and leaves
-    /// at the trailing edges. The drag across these faces stays: at small angles it is small against the lift,
-    /// and it bounds motions in which the flow would separate (Eloy, Kofman and Schouveiler, J. Fluid Mech. 691,
-    /// 2012).
+    /// at the trailing edges. The drag across these faces stays: at small angles it is small against the
+    /// lift, and it bounds motions in which the flow would separate (Eloy, Kofman and Schouveiler, J. Fluid
+    /// Mech. 691, 2012).
     ///
     /// # Errors
     /// [`AttachedFlowError`].

@@ -2,11 +2,11 @@
 
 use super::Attached;
 use super::wake::Past;
-use crate::vectors::{add, dot, largest_norm};
 use isosheet_dynamics::term::{
     BlockSink, Exchange, Formula, HessianPart, ImplicitForce, Iterate, StepStart, Term, Value,
 };
 use isosheet_dynamics::{Force, StepError};
+use isosheet_materials::vectors::{add, dot, largest_norm};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ impl ImplicitForce for Attached {
     fn term(&self, _free: Arc<[bool]>) -> Box<dyn Term> {
         Box::new(FlowStep {
             attached: self.clone(),
-            start: Start::default(),
+            start: FlowStart::default(),
             past: None,
             lagged: Lagged::default(),
         })
@@ -45,20 +45,20 @@ impl ImplicitForce for Attached {
 /// f(x) = f(y) + J d,   U(x) = -((f + g) . d + d . S d / 2),   d = x - y,   S = (J + J^T) / 2,
 /// ```
 ///
-/// where the derivative `J` is that by the velocities. Most of it is the mass of the air that moves along with
-/// the sheet, `-m / h^2`, which has an energy; the part without one, `g = (J - S) d`, lags behind, and so do the
-/// place of the lattice and the velocity along it, until `U` has the forces of the end of the step.
+/// where the derivative `J` is that by the velocities. Most of it is the mass of the air that moves along
+/// with the sheet, `-m / h^2`, which has an energy; the part without one, `g = (J - S) d`, lags behind, and
+/// so do the place of the lattice and the velocity along it, until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FlowStep {
     attached: Attached,
-    start: Start,
+    start: FlowStart,
     past: Option<Past>,
     lagged: Lagged,
 }
 
 /// What a step starts from.
 #[derive(Debug, Default)]
-struct Start {
+struct FlowStart {
     /// Time at its end, seconds.
     t: f64,
     /// Effective step, seconds.
@@ -269,8 +269,8 @@ impl FlowStep {
         Ok(())
     }
 
-    /// By how much the forces at an iterate are not those of the flow, as a part of the largest: to first order,
-    /// and where that has settled whole.
+    /// By how much the forces at an iterate are not those of the flow, as a part of the largest: to first
+    /// order, and where that has settled whole.
     fn error(&self, x: &[f64], settled: f64) -> f64 {
         let here = self.own(x);
         let forces = self.lagged.forces(&here);
@@ -309,7 +309,7 @@ impl Term for FlowStep {
         let shape = attached.air.lattice.shape(&state.x);
         let edges = attached.air.edge_forces(&shape, state.t, &state.v);
         let force = attached.air.forces(&shape, &edges, last, &past.rate);
-        self.start = Start {
+        self.start = FlowStart {
             t: step.t(),
             h: step.h,
             x: state.x.clone(),

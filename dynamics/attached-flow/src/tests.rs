@@ -103,8 +103,8 @@ impl Plate {
     }
 }
 
-/// Jones (NACA Report 835, 1946) for slender wings; Tuck (J. Austral. Math. Soc. B 35, 1993) for the square one;
-/// Helmbold (1942), within a twentieth of lifting surfaces, for long ones.
+/// Jones (NACA Report 835, 1946) for slender wings; Tuck (J. Austral. Math. Soc. B 35, 1993) for the square
+/// one; Helmbold (1942), within a twentieth of lifting surfaces, for long ones.
 #[test]
 fn lift_is_that_of_wing_theory() {
     let helmbold = |aspect: f64| 2.0 * PI * aspect / (2.0 + (4.0 + aspect * aspect).sqrt());
@@ -123,8 +123,8 @@ fn lift_is_that_of_wing_theory() {
     }
 }
 
-/// Of a square and of a plate ten times as long as wide, as parts of `pi a^2 b / 4` (DNV-RP-H103, 2011, Table A-2,
-/// by Patton 1965). The error falls by half with the size of faces.
+/// Of a square and of a plate ten times as long as wide, as parts of `pi a^2 b / 4` (DNV-RP-H103, 2011, Table
+/// A-2, by Patton 1965). The error falls by half with the size of faces.
 #[test]
 fn the_added_mass_of_plates_is_that_of_tables() {
     for (size, exact) in [
@@ -141,8 +141,8 @@ fn the_added_mass_of_plates_is_that_of_tables() {
     }
 }
 
-/// The lift of a long plate that is set in motion at once: half of it at first, two thirds after a chord (Wagner
-/// 1925, by the formula of Jones, NACA Report 681, 1940).
+/// The lift of a long plate that is set in motion at once: half of it at first, two thirds after a chord
+/// (Wagner 1925, by the formula of Jones, NACA Report 681, 1940).
 #[test]
 fn lift_grows_by_the_function_of_wagner() {
     let plate = Plate::new([6, 4], [1.0, 50.0], inclined(0.01));

@@ -5,8 +5,8 @@ use super::vortex::segment;
 use isosheet_dynamics::Wind;
 use nalgebra::Vector3;
 
-/// Part of the way of the air in a step by which a line of the wake is behind the trailing edges that shed it:
-/// the place of a vortex that acts at an edge as one that is spread over the way.
+/// Part of the way of the air in a step by which a line of the wake is behind the trailing edges that shed
+/// it: the place of a vortex that acts at an edge as one that is spread over the way.
 const BEHIND: f64 = 0.25;
 
 /// What the flow remembers of the past, which is a list of numbers in simulations and checkpoints.
@@ -172,8 +172,8 @@ impl Past {
         sum
     }
 
-    /// The past at a time (seconds) at the end of a step by which the wake has been carried and has grown. The
-    /// last rows become one.
+    /// The past at a time (seconds) at the end of a step by which the wake has been carried and has grown.
+    /// The last rows become one.
     pub(super) fn settled(mut self, t: f64, circulation: Vec<f64>) -> Self {
         let [last, before] = &self.circulations;
         let [t0, t1] = self.times;

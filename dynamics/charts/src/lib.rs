@@ -7,7 +7,8 @@
 //!   a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
 //!   built with; more pins, moving ones, curves and surfaces are closure equations
 //!   ([`ChartSimulation::from_state`]);
-//! * [`in_chart`]: all that as a [`Simulation`](isosheet_dynamics::Simulation), with balance of energy and checkpoints.
+//! * [`in_chart`]: all that as a [`Simulation`](isosheet_dynamics::Simulation), with balance of energy and
+//!   checkpoints.
 #![doc = include_str!("paper.md")]
 
 mod energy_bound;

@@ -32,6 +32,7 @@ use super::{ChartDynamicsError, ChartMechanics};
 use isosheet_coords::SaddlePoint;
 use isosheet_dynamics::Support;
 use isosheet_dynamics::engine::Balance;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};
 
@@ -87,11 +88,6 @@ pub(super) struct Mobility {
     rank: usize,
     mu: Vec<f64>,
     no_rates: Vec<f64>,
-}
-
-/// The coordinates of a vertex.
-fn point(x: &[f64], v: VertexId) -> Vector3<f64> {
-    Vector3::from(x.as_chunks::<3>().0[v.index()])
 }
 
 impl Mobility {

@@ -91,9 +91,9 @@ pub struct ChartOptions {
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
-    /// Most steps, rejected ones included, in one call of [`Simulation::step`](isosheet_dynamics::Simulation::step),
-    /// default 2^20: a step control that crawls along a singularity ends with an error instead of taking
-    /// hours.
+    /// Most steps, rejected ones included, in one call of
+    /// [`Simulation::step`](isosheet_dynamics::Simulation::step), default 2^20: a step control that crawls
+    /// along a singularity ends with an error instead of taking hours.
     pub max_steps: usize,
 }
 

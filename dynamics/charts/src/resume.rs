@@ -5,8 +5,8 @@ use super::state::ChartState;
 use super::stepping::Stepper;
 use super::{ChartDynamicsError, ChartMechanics, ChartOptions};
 use isosheet_coords::Chart;
-use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::engine::{Balance, ForceTime};
+use isosheet_dynamics::{CheckpointError, SheetModel};
 
 impl ChartSimulation {
     /// What a checkpoint keeps.
@@ -56,7 +56,8 @@ impl ChartSimulation {
             chart = chart.rebased(reference)?;
         }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
-        mechanics.memories_mut().take_over(&motion.memories)?;
+        let taken = mechanics.memories_mut().take_over(&motion.memories);
+        taken.map_err(CheckpointError::from)?;
         let n = mechanics.dimension();
         for (what, found) in [
             ("q", motion.state.q.len()),

@@ -1,17 +1,19 @@
 //! The energy-momentum integrator.
 
 use super::newton::{Newton, Terms};
-use crate::model::round_off::strain_floor;
-use crate::options::OptionsError;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome, not_converged};
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::not_converged;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::Balance;
-use crate::vectors::dot;
 use crate::{SheetModel, State};
 use isosheet_linalg::{LinalgError, norm_inf};
+use isosheet_materials::OptionsError;
+use isosheet_materials::potential::Memories;
+use isosheet_materials::vectors::dot;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::strain_floor;
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Method::EnergyMomentum`](crate::Method::EnergyMomentum).

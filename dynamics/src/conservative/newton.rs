@@ -1,14 +1,15 @@
 //! Newton's method for the velocity of a step and the impulses that keep the lengths in it.
 
+use crate::conservative::constraints::ConservativeRows;
 use crate::conservative::saddle::{SaddleMatrix, System};
-use crate::constraint::conservative::ConservativeRows;
-use crate::model::round_off::velocity_round_off;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::{StepError, StepOutcome};
+use crate::report::step_report::StepOutcome;
 use crate::step::history::Multipliers;
 use crate::{SheetModel, State};
 use isosheet_linalg::LinalgError;
+use isosheet_materials::potential::Memories;
+use isosheet_model::StepError;
+use isosheet_model::velocity_round_off;
 
 /// The unknowns of a step of `h` seconds from `x0` to `x1 = x0 + h u`, its residuals and its matrix.
 pub(super) struct Newton {

@@ -1,18 +1,20 @@
 //! RATTLE and its fourth-order composition.
 
 use super::newton::{Newton, Terms};
-use crate::model::round_off::{strain_floor, velocity_round_off};
-use crate::options::OptionsError;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome, not_converged};
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::not_converged;
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::{Balance, ForceTime};
-use crate::vectors::dot;
 use crate::{SheetModel, State};
 use isosheet_linalg::{LinalgError, norm_inf};
+use isosheet_materials::OptionsError;
+use isosheet_materials::potential::Memories;
+use isosheet_materials::vectors::dot;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::{strain_floor, velocity_round_off};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
@@ -270,8 +272,8 @@ impl Rattle {
             .apply(&self.newton.x1, &self.difference, &mut self.newton.rods);
     }
 
-    /// Mean forces of the supports over the step, up to the velocity `u`; the velocities at the end, as they are
-    /// foretold, are in `difference`.
+    /// Mean forces of the supports over the step, up to the velocity `u`; the velocities at the end, as they
+    /// are foretold, are in `difference`.
     fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
         let (u, v) = (&self.newton.u, &state.v);
         if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
@@ -328,7 +330,8 @@ impl Rattle {
             &self.newton.x1,
             &mut self.force,
         );
-        // Forces of velocities ask for that at the end, which the first half of the step foretells to second order.
+        // Forces of velocities ask for that at the end, which the first half of the step foretells to second
+        // order.
         for (d, (u, v)) in self
             .difference
             .iter_mut()

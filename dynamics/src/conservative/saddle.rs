@@ -1,15 +1,15 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
-use crate::constraint::conservative::SaddleBlocks;
+use crate::conservative::constraints::SaddleBlocks;
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{DIAGONAL, FULL, Layout, Slots};
-use crate::model::PINNED;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepOutcome;
+use crate::report::step_report::StepOutcome;
 use crate::{HessianSink, SheetModel};
 use isosheet_linalg::{LinalgError, SparseLu};
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Vector2};
 use std::collections::BTreeMap;
 

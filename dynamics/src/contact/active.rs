@@ -460,9 +460,9 @@ impl ActiveContacts {
         has_any
     }
 
-    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice and
-    /// pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already and
-    /// is left out.
+    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice
+    /// and pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already
+    /// and is left out.
     #[doc(hidden)]
     pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
         for c in &self.list {

@@ -1,9 +1,9 @@
 //! The barrier as a function of the gap.
 
 use super::{BarrierError, ContactLaws, Stiffness};
-use crate::model::load_scale::{LoadScale, constant_acceleration};
-use crate::vectors::diameter;
 use crate::{SheetModel, State};
+use isosheet_materials::vectors::diameter;
+use isosheet_model::{LoadScale, constant_acceleration};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 /// at which it was lagged (Li et al. 2020, Incremental potential contact, Sec. 5).
 ///
 /// For displacements `dx_i` since the start of the step, and `d` of the body's material point, the contact
-/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`, where the surfaces touch; its potential is `N F(|u|)` with the normal force `N`
-/// and the integral `F` of the friction law.
+/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`, where the surfaces touch; its potential is `N F(|u|)`
+/// with the normal force `N` and the integral `F` of the friction law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrictionContact {
     /// Which two primitives.
@@ -127,7 +127,8 @@ impl LaggedFriction {
         Self::default()
     }
 
-    /// Lags friction at active contacts at positions `x` of a step that started at positions `x0`; reuses memory.
+    /// Lags friction at active contacts at positions `x` of a step that started at positions `x0`; reuses
+    /// memory.
     pub fn lag(
         &mut self,
         laws: &ContactLaws,

@@ -9,11 +9,11 @@ pub enum Stiffness {
     /// A contact that carries a hundred vertices of mean mass under the largest acceleration that the
     /// potentials cause at the start keeps half the activation distance: `kappa = 100 m a d_hat /
     /// |b'(1/2)|`, the slope taken by the gap over `d_hat`; one that carries its own vertex only keeps
-    /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the
-    /// barrier is steep, ten times more and light contacts become hard: on draped
-    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. Without a constant force
-    /// such as weight the acceleration is at least that of the paper's gravity, 9.8 m/s2, and at least the one that
-    /// stops the sheet from its largest speed within its own size.
+    /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the barrier is
+    /// steep, ten times more and light contacts become hard: on draped sheets of 81 and 289 vertices either
+    /// costs up to five times the Newton iterations. Without a constant force such as weight the acceleration
+    /// is at least that of the paper's gravity, 9.8 m/s2, and at least the one that stops the sheet from its
+    /// largest speed within its own size.
     Automatic,
     /// A given value, joules.
     Joules(f64),
@@ -114,8 +114,8 @@ impl ContactLaws {
     }
 
     /// # Errors
-    /// [`FrictionError`] unless all coefficients are `0 <= sliding <= rest`, and the speed of rest is positive where there
-    /// is friction.
+    /// [`FrictionError`] unless all coefficients are `0 <= sliding <= rest`, and the speed of rest is
+    /// positive where there is friction.
     pub fn validate(&self) -> Result<(), FrictionError> {
         self.all().try_for_each(Coefficients::validate)?;
         match self.is_frictionless() || self.rest_speed > 0.0 && self.rest_speed.is_finite() {

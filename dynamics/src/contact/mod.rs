@@ -43,25 +43,24 @@ mod term;
 mod terms;
 mod vertex_data;
 
-pub use crate::report::contact_error::{
-    BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError,
-};
 pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use friction::{Coefficients, Friction};
+pub use isosheet_model::CarriedPoint;
+pub use isosheet_model::{BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError};
 pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
-pub use surface_points::{CarriedPoint, SurfacePoints, SurfacePointsError};
+pub use surface_points::{SurfacePoints, SurfacePointsError};
 pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};
 
-pub(crate) use crate::hessian::CouplingSink;
+pub(crate) use isosheet_materials::hessian::CouplingSink;
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
@@ -69,7 +68,89 @@ use nalgebra::{Matrix3, Vector3};
 /// The geometry of contact of a sheet with bodies and with itself.
 ///
 /// Everything that is returned depends on the arguments alone, not on earlier calls: what an implementation
-/// keeps between calls, such as a tree of boxes, saves time and nothing else.
+/// keeps between calls, such as a tree of boxes, saves time and nothing else. `isosheet-collide` has
+/// `Contacts`, of meshes and all shapes; this is the ground `z = 0` under the vertices:
+///
+/// ```
+/// use isosheet_dynamics::contact::{
+///     ActiveContact, BodyMotion, BodyPlace, Contact, ContactError, ContactKey, ContactKind,
+///     ContactLaws, JointMotion, StepMotion, StepSpan,
+/// };
+/// use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+/// use isosheet_mesh::{MassKind, generate};
+/// use nalgebra::{Isometry3, Vector3};
+///
+/// struct Ground(ContactLaws);
+///
+/// impl Contact for Ground {
+///     fn laws(&self) -> &ContactLaws {
+///         &self.0
+///     }
+///
+///     fn body_motions(&self, _span: StepSpan, out: &mut Vec<BodyMotion>) {
+///         let rest = StepMotion::new(Isometry3::identity(), Isometry3::identity());
+///         out.push(BodyMotion { material: rest, surface: rest });
+///     }
+///
+///     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+///         let mut safe: f64 = 1.0;
+///         for v in 0..motion.x.len() / 3 {
+///             let (gap, rise) = (motion.x[3 * v + 2], motion.dx[3 * v + 2]);
+///             if gap + rise.min(0.0) < self.0.activation {
+///                 let kind = ContactKind::Vertex;
+///                 pairs.push(ContactKey { body: Some(0), kind, pair: [v as u32, 0] });
+///                 // A tenth of the gap is left.
+///                 safe = if -rise > 0.9 * gap { safe.min(0.9 * gap / -rise) } else { safe };
+///             }
+///         }
+///         safe
+///     }
+///
+///     fn evaluate(
+///         &self,
+///         pairs: &[ContactKey],
+///         x: &[f64],
+///         _bodies: &[BodyPlace],
+///         out: &mut Vec<ActiveContact>,
+///     ) {
+///         for key in pairs {
+///             let v = key.pair[0];
+///             let [x, y, z] = x.as_chunks::<3>().0[v as usize];
+///             if z < self.0.activation {
+///                 out.push(ActiveContact {
+///                     key: *key,
+///                     vertices: [v; 4],
+///                     weights: [1.0, 0.0, 0.0, 0.0],
+///                     normal: Vector3::z(),
+///                     gap: z,
+///                     closest: Vector3::new(x, y, 0.0),
+///                     parallel: None,
+///                     rolling: None,
+///                     round: [None; 2],
+///                 });
+///             }
+///         }
+///     }
+///
+///     fn check_start(&mut self, _model: &SheetModel, state: &State) -> Result<(), ContactError> {
+///         assert!(state.vertex_positions().iter().all(|p| p[2] > 0.0), "it starts above");
+///         Ok(())
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.1)?.map_positions(|[x, y, _]| [x, y, 0.01 + x])?;
+/// let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped)?.with_gravity();
+/// let start = State::at_rest(sheet.positions().to_vec());
+/// let mut run = Simulation::new(model, start, Method::default())?
+///     .with_contact(Ground(ContactLaws::frictionless(1e-3)))?;
+/// for _ in 0..30 {
+///     let report = run.step(1.0 / 60.0)?;
+///     assert!(report.gap.is_none_or(|gap| gap > 0.0));
+/// }
+/// # Ok(())
+/// # }
+/// ```
 pub trait Contact: Send + Sync {
     /// Activation distance of the barrier, stiffness, friction.
     fn laws(&self) -> &ContactLaws;

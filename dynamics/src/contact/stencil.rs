@@ -36,10 +36,10 @@ impl Stencil {
     /// (three coordinates each).
     ///
     /// The closest points of two primitives move by `sum_i w_i u_i` relative to each other. The surface of a
-    /// round body is at `o = -r n` from the closest point of the first primitive, and at `o = r n` from that of the
-    /// second, with the radius `r` and the normal `n`. With four points `p_k` that the body carries, and `q` such
-    /// that `o = sum_k q_k (p_k - p_0)`, its material there moves by `sum_k q_k (u_k - u_0)` more: the lever of
-    /// friction.
+    /// round body is at `o = -r n` from the closest point of the first primitive, and at `o = r n` from that
+    /// of the second, with the radius `r` and the normal `n`. With four points `p_k` that the body carries,
+    /// and `q` such that `o = sum_k q_k (p_k - p_0)`, its material there moves by `sum_k q_k (u_k - u_0)`
+    /// more: the lever of friction.
     pub(super) fn of(contact: &ActiveContact, x: &[f64]) -> Self {
         let own = contact.vertices.into_iter().zip(contact.weights);
         let mut stencil = Self::new(own);
@@ -104,8 +104,8 @@ mod tests {
     use crate::contact::{ContactKey, ContactKind};
     use nalgebra::Rotation3;
 
-    /// Of a ball that turns about its centre, seen from a face below, the surface moves by `w x o`; of two balls
-    /// each by its own.
+    /// Of a ball that turns about its centre, seen from a face below, the surface moves by `w x o`; of two
+    /// balls each by its own.
     #[test]
     fn the_lever_is_that_of_the_surface() {
         let turn = Rotation3::from_euler_angles(0.3, -0.5, 1.1);

@@ -2,21 +2,18 @@
 
 use super::CouplingSink;
 use isosheet_mesh::{Advice, VertexId};
+use isosheet_model::CarriedPoint;
 use nalgebra::Matrix3;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// A point that is carried by vertices: their numbers and weights, which add up to one; unused places have
-/// weight zero.
-pub type CarriedPoint = [(VertexId, f64); 4];
-
-/// The points of the surface on which contact acts, `X_p = sum_k b_pk x_k` with the vertices `x_k` of a model:
-/// first vertices themselves, by their numbers, then points that vertices carry, such as those of the surface
-/// of a rigid body by the four of its [tetrahedron](crate::RigidBody).
+/// The points of the surface on which contact acts, `X_p = sum_k b_pk x_k` with the vertices `x_k` of a
+/// model: first vertices themselves, by their numbers, then points that vertices carry, such as those of the
+/// surface of a rigid body by the four of its [tetrahedron](crate::RigidBody).
 ///
-/// With the constant matrix `B` of the weights forces on the vertices are `B^T` times those on the points, and
-/// second derivatives `B^T H B`; straight motions of the vertices are straight motions of the points, so that
-/// what is proven about the latter holds for the former.
+/// With the constant matrix `B` of the weights forces on the vertices are `B^T` times those on the points,
+/// and second derivatives `B^T H B`; straight motions of the vertices are straight motions of the points, so
+/// that what is proven about the latter holds for the former.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfacePoints {
     model_vertices: usize,
@@ -129,7 +126,8 @@ impl SurfacePoints {
         self.model_vertices
     }
 
-    /// Sets `out` to the positions or displacements of the points that belong to those of the vertices (`3V`).
+    /// Sets `out` to the positions or displacements of the points that belong to those of the vertices
+    /// (`3V`).
     pub fn place(&self, x: &[f64], out: &mut Vec<f64>) {
         out.clear();
         out.extend_from_slice(&x[..3 * self.own]);
@@ -142,8 +140,8 @@ impl SurfacePoints {
         }
     }
 
-    /// Positions or displacements of the points, by those of the vertices (`3V`), where the points are not the vertices
-    /// themselves.
+    /// Positions or displacements of the points, by those of the vertices (`3V`), where the points are not
+    /// the vertices themselves.
     pub fn placed<'a>(points: Option<&Self>, x: &'a [f64]) -> Cow<'a, [f64]> {
         match points {
             None => Cow::Borrowed(x),

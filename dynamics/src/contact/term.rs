@@ -5,9 +5,9 @@ use super::{
     ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactSet, ContactState,
     ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints, advanced,
 };
-use crate::hessian::{BlockSink, HessianPart, HessianProduct};
-use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, State, StepError};
+use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
+use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.
@@ -32,7 +32,8 @@ struct InStep {
     /// The pairs of the motion that was checked last; the iterates stay on it.
     set: ContactSet,
     state: ContactState,
-    /// Positions of the vertices at which the contacts were evaluated, unless set or bodies have changed since.
+    /// Positions of the vertices at which the contacts were evaluated, unless set or bodies have changed
+    /// since.
     x: Vec<f64>,
     is_evaluated: bool,
     /// The points there, where they are not the vertices, and forces on them.
@@ -63,8 +64,8 @@ impl ContactTerm {
         Ok(Self::at_rest_with(geometry, barrier, bodies, state))
     }
 
-    /// Goes on with the barrier of an earlier run, where other things touch; with the contacts there, of which
-    /// friction knows nothing yet.
+    /// Goes on with the barrier of an earlier run, where other things touch; with the contacts there, of
+    /// which friction knows nothing yet.
     ///
     /// # Errors
     /// As [`ContactTerm::resume`].
@@ -395,9 +396,9 @@ impl Term for ContactTerm {
         });
     }
 
-    /// Lags friction of the step anew where a normal force has changed by more than `settled`, relative to the
-    /// largest. Otherwise friction remains that for which the iterate was found, and the forces of the step
-    /// balance.
+    /// Lags friction of the step anew where a normal force has changed by more than `settled`, relative to
+    /// the largest. Otherwise friction remains that for which the iterate was found, and the forces of the
+    /// step balance.
     fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
         self.at(at.x);
         let step = self.step.as_mut().expect("a step has begun");

@@ -1,7 +1,7 @@
 //! Barrier and friction together.
 
 use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction, couple};
-use crate::term::Exchange;
+use isosheet_model::term::Exchange;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -89,9 +89,9 @@ impl<'a> ContactTerms<'a> {
             .add_hessian(self.x, self.active.bodies(), sink);
     }
 
-    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice and
-    /// pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already and
-    /// is left out.
+    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice
+    /// and pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already
+    /// and is left out.
     pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
         self.active.append_couplings(out);
         for c in self.friction.contacts() {

@@ -6,13 +6,13 @@ use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
 use crate::damped::turning::{Predictions, Turning};
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
-use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_linalg::LinalgError;
+use isosheet_model::StepError;
+use isosheet_model::term::{Formula, StepStart};
 
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.

@@ -10,17 +10,18 @@ mod tests;
 mod workspace;
 
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, not_converged};
-use crate::report::trace::TraceEvent;
+use crate::report::totals::not_converged;
 use crate::step::history::History;
 use crate::step::integrator::Attempt;
 use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
-use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::Awake;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::TraceEvent;
+use isosheet_model::term::Exchange;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
@@ -40,7 +41,7 @@ pub(crate) struct Minimiser {
     faces: Faces,
     /// The arrays of [`StepStart`]: `y`, the prediction, and where the velocities lead.
     ///
-    /// [`StepStart`]: crate::term::StepStart
+    /// [`StepStart`]: isosheet_model::term::StepStart
     pub(crate) start: [Vec<f64>; 3],
 }
 

@@ -1,7 +1,7 @@
 //! Options of the damped methods.
 
 use crate::SheetModel;
-use crate::options::OptionsError;
+use isosheet_materials::OptionsError;
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Method::ImplicitEuler`](crate::Method::ImplicitEuler) and
@@ -13,9 +13,9 @@ pub struct ImplicitOptions {
     /// Default 1e4.
     pub stiffness: f64,
     /// Newton's method stops when the decrease predicted by its quadratic model is below this fraction of the
-    /// inertia term of the incremental potential; of what nothing holds that is the one in the frame that falls
-    /// freely, where it is less there. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths have a
-    /// tolerance of their own.
+    /// inertia term of the incremental potential; of what nothing holds that is the one in the frame that
+    /// falls freely, where it is less there. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths
+    /// have a tolerance of their own.
     pub tolerance: Option<f64>,
     /// Largest relative error of an edge length after a step, above the round-off of the coordinates. Default
     /// 1e-12.
@@ -23,13 +23,14 @@ pub struct ImplicitOptions {
     /// Largest number of Newton iterations per solver phase, a quarter of it in the first phase with contact;
     /// counted anew in each round of the augmented Lagrangian and of lagged friction. Default 80.
     pub max_iterations: usize,
-    /// Largest number of iterations per projection onto the lengths, in SQP a quarter of `max_iterations` at most.
-    /// Default 400.
+    /// Largest number of iterations per projection onto the lengths, in SQP a quarter of `max_iterations` at
+    /// most. Default 400.
     pub max_projections: usize,
     /// Largest change of a normal force between the last two updates of lagged friction, relative to the
     /// largest normal force. Default 1e-3; at least 0.05 in the augmented Lagrangian.
     pub friction_tolerance: f64,
-    /// Largest number of updates of lagged friction, and of loads that follow the sheet, per sub-step. Default 5.
+    /// Largest number of updates of lagged friction, and of loads that follow the sheet, per sub-step.
+    /// Default 5.
     pub max_friction_updates: usize,
     /// Seed of the perturbation of a state at a saddle point of the incremental potential. Default 0.
     pub seed: u64,
@@ -51,10 +52,11 @@ impl Default for ImplicitOptions {
 }
 
 impl ImplicitOptions {
-    /// The tolerance of the steps of a model: 1e-4 where it has rods, else 1e-3. With it the error of a step of an
-    /// elastic sheet is that of the time step alone (a square that falls from a corner: the same to 0.1 % at any
-    /// tolerance from 1e-8 to 1e-2), and what is left of the forces, in the norm of the inverse masses, is at most
-    /// the root of 1e-3, three hundredths, of what accelerates the sheet or holds it at rest.
+    /// The tolerance of the steps of a model: 1e-4 where it has rods, else 1e-3. With it the error of a step
+    /// of an elastic sheet is that of the time step alone (a square that falls from a corner: the same to 0.1
+    /// % at any tolerance from 1e-8 to 1e-2), and what is left of the forces, in the norm of the inverse
+    /// masses, is at most the root of 1e-3, three hundredths, of what accelerates the sheet or holds it at
+    /// rest.
     pub fn tolerance_of(&self, model: &SheetModel) -> f64 {
         let usual = if model.rods().is_empty() { 1e-3 } else { 1e-4 };
         self.tolerance.unwrap_or(usual)

@@ -32,7 +32,7 @@ pub(super) use repeated::handed_on;
 use crate::contact::{ActiveContact, ContactKey, ContactState, SurfacePoints};
 use crate::step::history::BodyChange;
 use crate::{SheetModel, State};
-use body::Body;
+use body::ImpactBody;
 pub(super) use body::mass_matrix;
 use isosheet_mesh::VertexId;
 use nalgebra::{DVector, Vector3};
@@ -72,7 +72,7 @@ pub(super) struct FormulaStep<'a> {
 
 /// Who touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
+enum Partner {
     /// A rigid body that responds, by its number.
     Body(usize),
     /// An obstacle, by its number.
@@ -137,8 +137,8 @@ impl FormulaStep<'_> {
     }
 
     /// The contacts of bodies by who touches.
-    fn meetings(&self) -> BTreeMap<[Part; 2], Meeting> {
-        let mut meetings: BTreeMap<[Part; 2], Meeting> = BTreeMap::new();
+    fn meetings(&self) -> BTreeMap<[Partner; 2], Meeting> {
+        let mut meetings: BTreeMap<[Partner; 2], Meeting> = BTreeMap::new();
         let [start, end] = self.contacts;
         let impulse = WHOLE * self.formula[1] * self.span;
         for contact in end.active.list() {
@@ -176,7 +176,7 @@ impl FormulaStep<'_> {
     }
 
     /// Adds the impulses of friction, where there is contact at all.
-    fn add_friction(&self, meetings: &mut BTreeMap<[Part; 2], Meeting>) {
+    fn add_friction(&self, meetings: &mut BTreeMap<[Partner; 2], Meeting>) {
         let [_, end] = self.contacts;
         let mut x = Vec::new();
         self.points.place(&self.end.x, &mut x);
@@ -197,28 +197,28 @@ impl FormulaStep<'_> {
     }
 
     /// The two that touch, if one of them is a body that responds and none is a sheet.
-    fn parts(&self, key: &ContactKey, [first, last]: [u32; 2]) -> Option<[Part; 2]> {
+    fn parts(&self, key: &ContactKey, [first, last]: [u32; 2]) -> Option<[Partner; 2]> {
         let of = |point: u32| {
             let vertex = self.points.heaviest_carrier(point);
             self.part_of(vertex)
         };
         let first = of(first)?;
         let second = match key.body {
-            Some(number) => Part::Obstacle(number),
+            Some(number) => Partner::Obstacle(number),
             // Those of the other one come last.
             None => of(last)?,
         };
-        let is_body = |part: &Part| matches!(part, Part::Body(_));
+        let is_body = |part: &Partner| matches!(part, Partner::Body(_));
         let parts = [first.min(second), first.max(second)];
         parts.iter().any(is_body).then_some(parts)
     }
 
-    fn part_of(&self, vertex: VertexId) -> Option<Part> {
+    fn part_of(&self, vertex: VertexId) -> Option<Partner> {
         let [bodies, driven] = self.model.sheets_end();
         let of_bodies = vertex.index().checked_sub(bodies)?;
         Some(match vertex.index() < driven {
-            true => Part::Body(of_bodies / 4),
-            false => Part::Driven,
+            true => Partner::Body(of_bodies / 4),
+            false => Partner::Driven,
         })
     }
 
@@ -234,12 +234,12 @@ impl FormulaStep<'_> {
         v0 + 0.5 * (before + after)
     }
 
-    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole ones of the barrier, and
-    /// those that friction has given.
+    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole ones of the barrier,
+    /// and those that friction has given.
     fn pushed<'a>(
         &'a self,
         meeting: &'a Meeting,
-    ) -> impl Iterator<Item = (Body, [DVector<f64>; 2])> + 'a {
+    ) -> impl Iterator<Item = (ImpactBody, [DVector<f64>; 2])> + 'a {
         let [bodies, driven] = self.model.sheets_end();
         let vertices = meeting.impulses.keys().filter(move |v| **v < driven);
         let mut firsts: Vec<usize> = vertices.map(|v| bodies + (v - bodies) / 4 * 4).collect();
@@ -253,7 +253,7 @@ impl FormulaStep<'_> {
                 impulses
             };
             let impulses = [&meeting.impulses, &meeting.friction].map(gathered);
-            (Body::new(self.model, self.end, first), impulses)
+            (ImpactBody::new(self.model, self.end, first), impulses)
         })
     }
 }

@@ -3,18 +3,18 @@
 mod correction;
 
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
 use crate::damped::ARMIJO;
-use crate::hessian::HessianPart;
 use crate::linear::constrained::ConstrainedSolver;
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
-use crate::term::Iterate;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::potential::Memories;
+use isosheet_model::term::Iterate;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -363,8 +363,8 @@ impl Restoration {
         }
     }
 
-    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions `x`.
-    /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions
+    /// `x`. The rods have the directions of the positions `rods_at`, those of `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,

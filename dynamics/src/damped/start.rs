@@ -3,15 +3,15 @@
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::linear::primal::PrimalMatrix;
-use crate::options::OptionsError;
-use crate::potential::{At, Memories};
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepError;
-use crate::report::support::Support;
 use crate::step::tuning::Tuning;
-use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};
+use isosheet_materials::potential::{At, Memories};
+use isosheet_materials::vectors::point;
+use isosheet_materials::{LimitError, OptionsError};
 use isosheet_mesh::VertexId;
+use isosheet_model::StepError;
+use isosheet_model::Support;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
@@ -179,7 +179,7 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
 fn check_swelling(model: &SheetModel, t: f64) -> Result<(), StepError> {
     let elastic = model.elastic_sheet();
     match elastic.and_then(|elastic| elastic.swollen_too_much(t)) {
-        Some(part) => Err(StepError::Swelling { part, t }),
+        Some(part) => Err(LimitError::Swelling { part, t }.into()),
         None => Ok(()),
     }
 }

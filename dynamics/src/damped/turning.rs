@@ -1,22 +1,23 @@
 //! Rigid bodies that turn: what formulas in space miss of a rotation.
 //!
 //! A backward differentiation formula continues the velocities of the corners of a body along straight lines.
-//! Where they go round, the rods have to turn them at the end of the step, and what is left of the formula there
-//! brakes the body: with the rate of rotation `w` and equal steps `h`, BDF2 makes `dw/dt = -w^5 h^3 / 2`. The
-//! motion of a body on which nothing acts is known, however. From a state it is `X(t)`, with the velocities `V(t)`,
-//! and what the formula with the coefficients `b` and `k` makes of that motion, after a step `h'`, is wrong by
+//! Where they go round, the rods have to turn them at the end of the step, and what is left of the formula
+//! there brakes the body: with the rate of rotation `w` and equal steps `h`, BDF2 makes
+//! `dw/dt = -w^5 h^3 / 2`. The motion of a body on which nothing acts is known, however. From a state it is
+//! `X(t)`, with the velocities `V(t)`, and what the formula with the coefficients `b` and `k` makes of that
+//! motion, after a step `h'`, is wrong by
 //!
 //! ```text
 //! e_v = V(h) - (V(0) + b (V(0) - V(-h'))),
 //! e_x = X(h) - (X(0) + b (X(0) - X(-h')) + k h (V(0) + b (V(0) - V(-h')))).
 //! ```
 //!
-//! With both added to the prediction of the formula, a free body turns as it should, and what acts on it acts as
-//! before. Both are of second order in `h`, as is the part of the force of the rods that they stand for.
+//! With both added to the prediction of the formula, a free body turns as it should, and what acts on it acts
+//! as before. Both are of second order in `h`, as is the part of the force of the rods that they stand for.
 
 use crate::damped::restitution::mass_matrix;
-use crate::model::PINNED;
 use crate::{SheetModel, State};
+use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
 
 /// Angle of a part of the integration of a rotation, radians: its fifth power is the error of the energy.
@@ -39,8 +40,8 @@ struct Turned {
     mass: Matrix4<f64>,
 }
 
-/// The predictions of a step, `3V`: where the vertices would be without the force of the formula, and where with
-/// inertia alone, metres.
+/// The predictions of a step, `3V`: where the vertices would be without the force of the formula, and where
+/// with inertia alone, metres.
 pub(super) struct Predictions<'a> {
     pub(super) rest: &'a mut [f64],
     pub(super) inertial: &'a mut [f64],
@@ -65,8 +66,8 @@ impl Turning {
         }
     }
 
-    /// Corrects the predictions of a step of `h` seconds with the coefficients `b` and `k` by what they miss of
-    /// rotations; the step before took `before` seconds. Returns the changes of `rest`, by coordinates.
+    /// Corrects the predictions of a step of `h` seconds with the coefficients `b` and `k` by what they miss
+    /// of rotations; the step before took `before` seconds. Returns the changes of `rest`, by coordinates.
     pub(super) fn correct(
         &self,
         state: &State,
@@ -156,7 +157,8 @@ impl FreeMotion {
         turned * (self.inverse * (turned.inverse() * self.momentum))
     }
 
-    /// The corners at a time, seconds from the start: the rotation by the method of Runge and Kutta, of fourth order.
+    /// The corners at a time, seconds from the start: the rotation by the method of Runge and Kutta, of
+    /// fourth order.
     fn at(&self, t: f64) -> Corners {
         let angle = self.rate(&UnitQuaternion::identity()).norm() * t.abs();
         let parts = (angle / PART).ceil().clamp(1.0, MOST_PARTS);

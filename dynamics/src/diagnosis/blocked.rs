@@ -1,10 +1,10 @@
 //! Dependent rods that block a motion.
 
 use crate::linear::rod_least_squares::RodLeastSquares;
-use crate::potential::Memories;
-use crate::vectors::point;
 use crate::{SheetModel, State};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::potential::Memories;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::VertexId;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

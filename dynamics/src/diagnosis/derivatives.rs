@@ -1,28 +1,31 @@
 //! Derivatives against differences.
 
-use crate::hessian::HessianProduct;
-use crate::potential::{At, Potential};
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::potential::{At, Potential};
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::Topology;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Displacements of central differences, as parts of the size of the positions. The error of a difference of smooth
-/// energies falls by the square of the displacement until round-off takes over; the best of these is that of neither.
+/// Displacements of central differences, as parts of the size of the positions. The error of a difference of
+/// smooth energies falls by the square of the displacement until round-off takes over; the best of these is
+/// that of neither.
 const DISPLACEMENTS: [f64; 6] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 
-/// By how much derivatives differ from central differences, as parts of their size: zero where the differences do not
-/// resolve it, since the energy is large against its change or near a limit.
+/// By how much derivatives differ from central differences, as parts of their size: zero where the
+/// differences do not resolve it, since the energy is large against its change or near a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DerivativeErrors {
     /// Of the gradient against the energy.
     pub gradient: f64,
-    /// Of the Hessian against the gradient. A Hessian may leave blocks out, which costs iterations and no accuracy: then
-    /// it differs.
+    /// Of the Hessian against the gradient. A Hessian may leave blocks out, which costs iterations and no
+    /// accuracy: then it differs.
     pub hessian: f64,
 }
 
-/// Compares gradient and Hessian of a potential of a sheet of this topology with central differences at a place, along its
-/// gradient and along two directions that are random with a fixed seed.
+/// Compares gradient and Hessian of a potential of a sheet of this topology with central differences at a
+/// place, along its gradient and along two directions that are random with a fixed seed.
 ///
 /// ```
 /// use isosheet_dynamics::{At, CreaseSprings, check_derivatives};
@@ -142,8 +145,8 @@ fn errors(
     errors
 }
 
-/// Of values with their noise the most certain one, and how uncertain it is: by the noise, or by how much it differs from
-/// the one before.
+/// Of values with their noise the most certain one, and how uncertain it is: by the noise, or by how much it
+/// differs from the one before.
 fn settled(values: &[(f64, f64)]) -> Option<(f64, f64)> {
     let pairs = values.windows(2).map(|pair| {
         let [(before, _), (value, noise)] = [pair[0], pair[1]];
@@ -155,8 +158,4 @@ fn settled(values: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 fn norm(v: &[f64]) -> f64 {
     dot(v, v).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -5,10 +5,10 @@ mod fit;
 mod gaps;
 
 use crate::contact::{ContactState, ContactTerm};
-use crate::report::infeasibility::Infeasibility;
 use crate::{SheetModel, State};
 use fit::{Fit, ROD_STIFFNESS};
 use gaps::Gaps;
+use isosheet_model::Infeasibility;
 
 /// Looks for positions with the rest lengths or strains within the limit, with the supports and bodies where
 /// they are at time `t` and with gaps that are not negative, and says by how much they fail to exist.
@@ -24,8 +24,8 @@ use gaps::Gaps;
 /// are minimised by Newton's method from the state; the gaps are those of the contacts at the state,
 /// linearised. Where the minimum is not zero its forces are in equilibrium at all free vertices: by Farkas'
 /// lemma for the linearised lengths and gaps no small motion meets them. Twice the energy is the sum of force
-/// times violation, so that the part `2 E / W` of the motions is too much, where `W` is the work of the forces
-/// of all that moves over its motion.
+/// times violation, so that the part `2 E / W` of the motions is too much, where `W` is the work of the
+/// forces of all that moves over its motion.
 pub(crate) fn infeasibility(
     model: &SheetModel,
     contact: Option<(&mut ContactTerm, &ContactState)>,

@@ -2,17 +2,17 @@
 
 use super::derivatives::check_derivatives;
 use crate::SheetModel;
-use crate::hessian::HessianSink;
-use crate::potential::{At, Memories, Potential};
-use crate::report::potential_fault::{BadPotential, PotentialFault};
+use isosheet_materials::hessian::HessianSink;
+use isosheet_materials::potential::{At, Memories, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::{BadPotential, PotentialFault};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 use std::fmt::Write;
 
-/// Part of the gradient by which it may differ from central differences of the energy before it is called wrong: these
-/// err by some 1e-9 where energies are smooth, and a gradient that is wrong in the third digit changes no result that
-/// is measured.
+/// Part of the gradient by which it may differ from central differences of the energy before it is called
+/// wrong: these err by some 1e-9 where energies are smooth, and a gradient that is wrong in the third digit
+/// changes no result that is measured.
 const WRONG: f64 = 1e-3;
 
 /// Whether gradients are compared with differences of the energies.
@@ -22,9 +22,9 @@ pub(crate) enum Differences {
     Compare,
 }
 
-/// The first potential that cannot be used at time `t` (seconds) and positions `x` (`3V`, metres): that is not finite,
-/// whose Hessian has a block of a pair that its [`Potential::couplings`] do not name, or of a vertex or an edge that the
-/// sheet has not, or whose gradient is not the derivative of its energy.
+/// The first potential that cannot be used at time `t` (seconds) and positions `x` (`3V`, metres): that is
+/// not finite, whose Hessian has a block of a pair that its [`Potential::couplings`] do not name, or of a
+/// vertex or an edge that the sheet has not, or whose gradient is not the derivative of its energy.
 pub(crate) fn find_fault(
     model: &SheetModel,
     memories: &Memories,

@@ -1,7 +1,7 @@
 //! What presses the sheet where no step is found.
 
 use crate::contact::{ContactState, ContactTerm, StepSpan};
-use crate::report::pressing::Pressing;
+use isosheet_model::Pressing;
 
 /// Of the bodies that move on within a span of time from the state of the contacts, the one that the sheet
 /// resists most: by the work of its present normal forces. Nothing if none moves into the sheet.

@@ -1,12 +1,13 @@
 //! Rank of the rigidity matrix.
 
 use crate::SheetModel;
-use crate::model::PINNED;
 use isosheet_linalg::{Ordering, Pattern, SparseLdlt, elimination_order};
+use isosheet_model::PINNED;
 use nalgebra::{DMatrix, Vector3};
 
 /// Rank of the length constraints at a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RodRank {
     /// Rods with at least one free end.
     pub rods: usize,

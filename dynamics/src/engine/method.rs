@@ -4,11 +4,11 @@ use crate::conservative::energy_momentum::{EnergyMomentum, EnergyMomentumOptions
 use crate::conservative::rattle::{Rattle, RattleOptions};
 use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
-use crate::options::OptionsError;
 use crate::step::integrator::Integrator;
 use crate::step::tuning::Tuning;
-use crate::term::Formula;
 use crate::{SheetModel, SimulationError};
+use isosheet_materials::OptionsError;
+use isosheet_model::term::Formula;
 use serde::{Deserialize, Serialize};
 
 /// A chart-free integrator.
@@ -26,8 +26,8 @@ pub enum Method {
     ///
     /// `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` subject to `c(x) = 0`.
     /// It is found by Newton's method with a line search, in sequential quadratic programming or an augmented
-    /// Lagrangian, and projected onto the lengths. Non-conservative forces `f(t, x, v)` are those at the end of the
-    /// step, `f(t1, x0 + h v0, v0)`.
+    /// Lagrangian, and projected onto the lengths. Non-conservative forces `f(t, x, v)` are those at the end
+    /// of the step, `f(t1, x0 + h v0, v0)`.
     ImplicitEuler(ImplicitOptions),
     /// Second-order backward differentiation formula (BDF2), lightly dissipative, the default. With the ratio
     /// `w = h / h_` of the step to the one before:
@@ -38,12 +38,12 @@ pub enum Method {
     /// ```
     ///
     /// `x_` and `v_` belong to the start of the step before. Solved as [`Method::ImplicitEuler`] with the
-    /// step `k h`. Non-conservative forces are those at the end of the step, with velocities extrapolated to it,
-    /// `f(t1, x0 + h v0, v0 + w (v0 - v_))`: of second order.
+    /// step `k h`. Non-conservative forces are those at the end of the step, with velocities extrapolated to
+    /// it, `f(t1, x0 + h v0, v0 + w (v0 - v_))`: of second order.
     ///
     /// The first step, the first after a change of the state from outside or at a
-    /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before, and are implicit Euler
-    /// (`w = 0`). One such step leaves the order two.
+    /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before, and are
+    /// implicit Euler (`w = 0`). One such step leaves the order two.
     Bdf2(ImplicitOptions),
     /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:
@@ -120,18 +120,18 @@ impl Default for Method {
 /// Subdivision of steps that the integrator rejects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
-    /// Largest estimated error that a sub-step of BDF2 or implicit Euler may add to the positions, metres, as the root
-    /// of the mean square over the vertices that are not pinned. Sub-steps are halved until it is met, down to
-    /// `min_fraction`, and doubled again where the estimate of twice the length meets it. With the lengths `h` of a
-    /// sub-step and `h / w` of the one before it is
+    /// Largest estimated error that a sub-step of BDF2 or implicit Euler may add to the positions, metres, as
+    /// the root of the mean square over the vertices that are not pinned. Sub-steps are halved until it is
+    /// met, down to `min_fraction`, and doubled again where the estimate of twice the length meets it. With
+    /// the lengths `h` of a sub-step and `h / w` of the one before it is
     ///
     /// ```text
     /// h (1 + w) / (3 (1 + 2 w)) |v1 - v0 - w (v0 - v_)|   for BDF2,   h / 2 |v1 - v0|   for implicit Euler,
     /// ```
     ///
-    /// which is of third and of second order in `h` for smooth motions, and of first order in impacts. Errors of
-    /// sub-steps add up, and what the motion makes of them later is not in it. Default none: sub-steps are as long as
-    /// they are asked for.
+    /// which is of third and of second order in `h` for smooth motions, and of first order in impacts. Errors
+    /// of sub-steps add up, and what the motion makes of them later is not in it. Default none: sub-steps are
+    /// as long as they are asked for.
     pub accuracy: Option<f64>,
     /// Smallest sub-step relative to the step asked for. Default 2^-14.
     pub min_fraction: f64,

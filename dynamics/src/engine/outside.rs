@@ -1,14 +1,17 @@
 //! Engines from outside: other ways to move a sheet than the methods of this crate.
 
-pub use crate::report::engine_error::{AdvisedError, EngineError};
-use crate::report::step_error::{StepError, StepOutcome, StepTotals};
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::StepTotals;
 pub use crate::step::reaction::{Balance, ForceTime, supports};
 use crate::{Memories, Reaction, SheetModel, State};
+use isosheet_model::StepError;
+pub use isosheet_model::{AdvisedError, EngineError};
 use std::any::Any;
 
 /// What moves a sheet in a [`Simulation`](crate::Simulation) that is made by
-/// [`Simulation::with_engine`](crate::Simulation::with_engine), such as motion in system coordinates. The simulation keeps the
-/// balance of energy, and takes checkpoints. There is no contact, and no step control but the engine's own.
+/// [`Simulation::with_engine`](crate::Simulation::with_engine), such as motion in system coordinates. The
+/// simulation keeps the balance of energy, and takes checkpoints. There is no contact, and no step control
+/// but the engine's own.
 pub trait Engine: Any + Send {
     /// Its name in checkpoints and messages, such as "a chart".
     fn name(&self) -> &'static str;
@@ -25,7 +28,8 @@ pub trait Engine: Any + Send {
     /// What the potentials remember.
     fn memories_mut(&mut self) -> &mut Memories;
 
-    /// Advances to the time `end` (seconds), and counts what it does. It stops where [`Progress::goes_on`] says no.
+    /// Advances to the time `end` (seconds), and counts what it does. It stops where [`Progress::goes_on`]
+    /// says no.
     ///
     /// # Errors
     /// [`StepError::Engine`], [`StepError::Interrupted`]. The state is that of the last accepted sub-step.

@@ -1,9 +1,9 @@
 //! Forces of the rods.
 
 use crate::linear::rod_least_squares::RodLeastSquares;
-use crate::model::PINNED;
 use crate::step::history::Multipliers;
 use crate::{Method, SheetModel};
+use isosheet_model::PINNED;
 
 impl Method {
     /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have

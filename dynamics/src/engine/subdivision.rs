@@ -30,7 +30,8 @@ impl Subdivision {
         }
     }
 
-    /// Makes no sub-step longer than `length` seconds from now on, if there is one as short as that on the grid.
+    /// Makes no sub-step longer than `length` seconds from now on, if there is one as short as that on the
+    /// grid.
     pub(crate) fn limit(&mut self, length: f64) {
         // Lengths that were sub-steps of another step differ by round-off.
         let mut largest = 1.0;

@@ -11,28 +11,31 @@ use crate::diagnosis::pressing::pressing;
 use crate::diagnosis::rank::rod_rank;
 use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
-use crate::model::breaks::{Breaks, Start};
-use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::{At, Memories};
 use crate::report::checkpoint_error::CheckpointError;
-use crate::report::infeasibility::Infeasibility;
-use crate::report::potential_fault::PotentialFault;
-use crate::report::pressing::Pressing;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome, StepTotals};
-use crate::report::trace::TraceEvent;
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::StepTotals;
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
 use crate::step::motion::Motion;
 use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
-use crate::term::{Exchange, Formula};
 use crate::{
     Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
+use isosheet_materials::LimitError;
+use isosheet_materials::potential::{At, Memories};
 use isosheet_mesh::VertexId;
+use isosheet_model::Infeasibility;
+use isosheet_model::PotentialFault;
+use isosheet_model::Pressing;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::TraceEvent;
+use isosheet_model::immobile_vertices;
+use isosheet_model::term::{Exchange, Formula};
+use isosheet_model::{Breaks, Start};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -140,7 +143,8 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let mut motion = kept.motion;
         let mut memories = model.memories();
-        memories.take_over(&motion.memories)?;
+        let taken = memories.take_over(&motion.memories);
+        taken.map_err(CheckpointError::from)?;
         motion.memories = memories;
         motion.check(&model, &kept.fixed)?;
         let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
@@ -393,8 +397,8 @@ enum Stop {
 }
 
 impl Substeps<'_, '_> {
-    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
-    /// as the integrator said.
+    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each
+    /// other, or as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
         if matches!(
             cause,
@@ -431,8 +435,8 @@ impl Substeps<'_, '_> {
         }))
     }
 
-    /// The error of an elastic sheet that is stretched so near to its limit that the numbers of its barrier are too large for
-    /// the arithmetic, if the linear algebra failed.
+    /// The error of an elastic sheet that is stretched so near to its limit that the numbers of its barrier
+    /// are too large for the arithmetic, if the linear algebra failed.
     fn at_limit(&self, cause: &StepError) -> Option<StepError> {
         let reason = Reason::LinearAlgebra;
         if !matches!(cause, StepError::NotConverged { reason: found, .. } if *found == reason) {
@@ -450,8 +454,8 @@ impl Substeps<'_, '_> {
         })
     }
 
-    /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no search can
-    /// succeed with it.
+    /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no
+    /// search can succeed with it.
     fn wrong_potential(&self) -> Option<StepError> {
         let Motion {
             state, memories, ..
@@ -647,8 +651,9 @@ impl Substeps<'_, '_> {
         }
     }
 
-    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
-    /// go: what is accepted does not depend on the effort.
+    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made
+    /// again without a limit, unless the sheet locks, or has nowhere to go: what is accepted does not depend
+    /// on the effort.
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
         let proposed = self.attempt(h);
         if !self.totals.effort.is_spent() {
@@ -676,7 +681,7 @@ impl Substeps<'_, '_> {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
-                | StepError::Swelling { .. }
+                | StepError::Limit(LimitError::Swelling { .. })
                 | StepError::Body(_)
                 | StepError::Interrupted { .. }
                 | StepError::Locked { .. }

@@ -2,9 +2,9 @@
 //! of velocities, forces of supports and certificates.
 
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, dot, point};
+use isosheet_materials::vectors::{add, dot, point};
 use nalgebra::Vector3;
 
 #[cfg(test)]

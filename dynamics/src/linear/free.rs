@@ -1,7 +1,7 @@
 //! Free coordinates, and the penalties of rods between them.
 
 use crate::SheetModel;
-use crate::model::PINNED;
+use isosheet_model::PINNED;
 
 /// Copies the free entries of `full` (`3V`) into `packed`.
 pub(crate) fn gather(model: &SheetModel, full: &[f64], packed: &mut [f64]) {

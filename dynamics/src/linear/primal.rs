@@ -6,18 +6,18 @@ mod iterative;
 mod low_rank;
 mod whole;
 
-use crate::hessian::{BlockSink, CouplingSink};
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
-use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::vectors::add;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::{FarCouplings, NotNamed, stiff_pairs};
 use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_materials::hessian::{BlockSink, CouplingSink};
+use isosheet_materials::vectors::add;
 use isosheet_mesh::{EdgeId, VertexId};
-use iterative::{ConjugateGradients, Ending, Goal};
+use isosheet_model::PINNED;
+use iterative::{ConjugateGradients, Goal, IterationEnd};
 use low_rank::LowRank;
 use nalgebra::{Matrix3, Vector3};
 use whole::WholeMatrix;
@@ -45,8 +45,8 @@ const GRADIENT_ACCURACY: f64 = 0.1;
 /// Potentials may couple vertices without a common edge. Bending couples some thirty to each vertex, and a
 /// factorisation with these couplings takes ten times as long as one without. So the matrix without them,
 /// with their substitutes ([`FarCouplings`]), is factorised where that is the cheaper way, and conjugate
-/// gradients on the whole matrix do the rest. Terms of rank one that couple all vertices are no part of what is
-/// factorised, and enter solutions exactly ([`LowRank`]).
+/// gradients on the whole matrix do the rest. Terms of rank one that couple all vertices are no part of what
+/// is factorised, and enter solutions exactly ([`LowRank`]).
 pub(crate) struct PrimalMatrix {
     /// All but the far couplings.
     near: SparseLlt,
@@ -351,8 +351,8 @@ impl PrimalMatrix {
     /// Factorises the matrix that was assembled last, or without its far couplings.
     ///
     /// # Errors
-    /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive definite.
-    /// (Without far couplings some matrices that are not positive definite are factorised;
+    /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive
+    /// definite. (Without far couplings some matrices that are not positive definite are factorised;
     /// [`PrimalMatrix::solve_whole`] finds those that matter.)
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         if self.far.are_zero() {
@@ -390,7 +390,8 @@ impl PrimalMatrix {
         expected <= self.iterations_worth() as f64
     }
 
-    /// Whether a block had no place: one of a pair that nothing has named, or of a vertex or an edge that there is not.
+    /// Whether a block had no place: one of a pair that nothing has named, or of a vertex or an edge that
+    /// there is not.
     pub(crate) fn has_misplaced(&self) -> bool {
         self.has_misplaced
     }
@@ -504,16 +505,16 @@ impl PrimalMatrix {
         };
         let (ending, _) = self.iteration.solve(&mut solve, &self.far, &self.rhs, goal);
         match ending {
-            Ending::Solved => scatter(model, &self.iteration.x, out),
-            Ending::TooSlow if effort.count_factorisation() => {
+            IterationEnd::Solved => scatter(model, &self.iteration.x, out),
+            IterationEnd::TooSlow if effort.count_factorisation() => {
                 self.is_slow = true;
                 self.add_substitutes(-1.0);
                 self.factorize_whole()?;
                 self.solve(model, b, out);
             }
             // The step has been interrupted, and what follows has no meaning.
-            Ending::TooSlow => scatter(model, &self.iteration.x, out),
-            Ending::NotDefinite => {
+            IterationEnd::TooSlow => scatter(model, &self.iteration.x, out),
+            IterationEnd::NotDefinite => {
                 let (order, index) = (self.rhs.len(), 0);
                 return Err(LinalgError::NotPositiveDefinite { order, index });
             }

@@ -9,8 +9,8 @@ use crate::linear::primal::PrimalMatrix;
 const PASSES: usize = 4;
 
 /// Least-squares solutions of `A y = r` with the rigidity matrix `A` of unit rods, whose rows are
-/// `a_e = (x_a - x_b) / l_e`, by iterated Tikhonov regularisation: `(s0^2 M / m + A^T A) y = A^T r` with a bound `s0` of
-/// singular values and the mean mass `m`, see [`ConstrainedSolver`].
+/// `a_e = (x_a - x_b) / l_e`, by iterated Tikhonov regularisation: `(s0^2 M / m + A^T A) y = A^T r` with a
+/// bound `s0` of singular values and the mean mass `m`, see [`ConstrainedSolver`].
 pub(crate) struct RodLeastSquares<'a> {
     model: &'a SheetModel,
     matrix: PrimalMatrix,

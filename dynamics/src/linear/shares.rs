@@ -1,12 +1,12 @@
 //! The forces of supports that balance given forces at free vertices.
 
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
 use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, point};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
@@ -55,7 +55,8 @@ impl Shares {
 fn local(model: &SheetModel, (t, x): (f64, &[f64]), left: &[f64], active: &[bool]) -> Shares {
     let mut sum = Shares::none(model);
     let constraints = model.constraints();
-    // Constraints of one vertex take what those before them have left; of normals at right angles that is all.
+    // Constraints of one vertex take what those before them have left; of normals at right angles that is
+    // all.
     let mut rest = left.to_vec();
     for (i, c) in constraints.iter().enumerate() {
         let v = c.vertex();

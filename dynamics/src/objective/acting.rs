@@ -1,21 +1,21 @@
 //! Potentials and explicit forces in a step.
 
-use crate::hessian::{BlockSink, HessianPart};
-use crate::model::PINNED;
-use crate::potential::{At, Limited};
-use crate::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::{At, Limited};
 use isosheet_mesh::VertexId;
+use isosheet_model::PINNED;
+use isosheet_model::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use std::sync::Arc;
 
-/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`; `x^` is
-/// the prediction.
+/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`;
+/// `x^` is the prediction.
 ///
-/// The explicit forces are those at the time of the end, which is exact where they depend on time alone, and at the
-/// positions and velocities that the step is expected to end with ([`StepStart::ahead`],
-/// [`StepStart::add_velocity_ahead`]): a two-step formula keeps its order (U. M. Ascher, S. J. Ruuth and B. T. R.
-/// Wetton, SIAM J. Numer. Anal. 32, 1995).
+/// The explicit forces are those at the time of the end, which is exact where they depend on time alone, and
+/// at the positions and velocities that the step is expected to end with ([`StepStart::ahead`],
+/// [`StepStart::add_velocity_ahead`]): a two-step formula keeps its order (U. M. Ascher, S. J. Ruuth and B.
+/// T. R. Wetton, SIAM J. Numer. Anal. 32, 1995).
 pub(super) struct Acting {
     model: Arc<SheetModel>,
     has_limit: bool,
@@ -109,12 +109,14 @@ impl Acting {
     /// As [`Limited::check`].
     pub(super) fn check_at(&self, at: At<'_>) -> Result<(), StepError> {
         let mut limits = self.model.potentials().filter_map(|p| p.limit());
-        limits.try_for_each(|limit| limit.check(at))
+        limits.try_for_each(|limit| limit.check(at))?;
+        Ok(())
     }
 
-    /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from that of the
-    /// forces there, if they are too stiff to be expected: if with the motion `z` at the end and the expected one `y`
-    /// `|h^2 M^-1 (f(z) - f(y))| > |z - y|` in the norm of the masses, so that the iteration `y <- z(y)` diverges.
+    /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from
+    /// that of the forces there, if they are too stiff to be expected: if with the motion `z` at the end and
+    /// the expected one `y` `|h^2 M^-1 (f(z) - f(y))| > |z - y|` in the norm of the masses, so that the
+    /// iteration `y <- z(y)` diverges.
     fn misjudged(&mut self, step: &StepStart<'_>, x: &[f64]) -> f64 {
         let h = step.h;
         let v = x.iter().zip(step.rest).map(|(x, y)| (x - y) / h);
@@ -249,8 +251,8 @@ impl Term for Acting {
         any
     }
 
-    /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step formula
-    /// that of their mean at both ends, which may err by the difference of the two.
+    /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step
+    /// formula that of their mean at both ends, which may err by the difference of the two.
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let start = step.state;
         if self.model.forces().is_empty() {

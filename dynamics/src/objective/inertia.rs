@@ -1,12 +1,12 @@
 //! The inertia of a step.
 
 use crate::PotentialShape;
-use crate::hessian::{BlockSink, HessianPart};
-use crate::model::PINNED;
-use crate::potential::At;
-use crate::term::{Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::At;
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::PINNED;
+use isosheet_model::term::{Exchange, Iterate, StepStart, Term, Value};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -97,8 +97,8 @@ impl Inertia {
     /// sum_k max(0, |d|_M^2 / 2 - |d - c_k|_M^2 / 2),     d = x - x^,
     /// ```
     ///
-    /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight `F_k`
-    /// of the part alone takes it.
+    /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight
+    /// `F_k` of the part alone takes it.
     pub(super) fn of_fall(&mut self) -> f64 {
         let Falling {
             masses,

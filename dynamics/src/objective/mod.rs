@@ -5,20 +5,20 @@ mod inertia;
 #[cfg(test)]
 mod spring_tests;
 
-use crate::hessian::HessianProduct;
 use crate::linear::primal::PrimalMatrix;
-use crate::model::PINNED;
-use crate::potential::At;
-use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
 use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::both;
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::potential::At;
+use isosheet_model::PINNED;
+use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use std::any::Any;
 use std::sync::Arc;
 
-pub(crate) use crate::hessian::HessianPart;
+pub(crate) use isosheet_materials::hessian::HessianPart;
 
 /// What the damped methods minimise in a step of the effective length `h`,
 ///
@@ -26,8 +26,8 @@ pub(crate) use crate::hessian::HessianPart;
 /// Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x),
 /// ```
 ///
-/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the model,
-/// and contact where a scene names it.
+/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the
+/// model, and contact where a scene names it.
 pub(crate) struct Objective {
     inertia: Inertia,
     /// Potentials and explicit forces.
@@ -133,8 +133,8 @@ impl Objective {
         self.terms().try_for_each(|term| term.check(span, x))
     }
 
-    /// Refuses positions at the end of a step where the limits of the potentials leave no place at the time of its
-    /// start: the work of what is prescribed is measured there, too.
+    /// Refuses positions at the end of a step where the limits of the potentials leave no place at the time
+    /// of its start: the work of what is prescribed is measured there, too.
     ///
     /// # Errors
     /// As [`Limited::check`](crate::Limited::check).

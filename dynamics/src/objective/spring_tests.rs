@@ -1,12 +1,12 @@
-//! A new term of the objective is one type: a spring between two vertices as a term, against the same spring as
-//! a potential.
+//! A new term of the objective is one type: a spring between two vertices as a term, against the same spring
+//! as a potential.
 
-use crate::hessian::{BlockSink, HessianPart, HessianSink};
-use crate::potential::{At, CouplingKind, Force, Potential};
-use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
-use crate::vectors::{add, point};
 use crate::{ImplicitOptions, Method, SheetModel, Simulation, State, StepError, leave_flat};
+use isosheet_materials::hessian::{BlockSink, HessianPart, HessianSink};
+use isosheet_materials::potential::{At, CouplingKind, Force, Potential};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::{MassKind, VertexId, generate};
+use isosheet_model::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -1,5 +1,6 @@
 //! Errors and checks of checkpoints.
 
+use isosheet_materials::potential::OtherMemories;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 
@@ -158,5 +159,15 @@ pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), Che
             index,
             value: values[index],
         }),
+    }
+}
+
+impl From<OtherMemories> for CheckpointError {
+    fn from(OtherMemories { found, expected }: OtherMemories) -> Self {
+        Self::Length {
+            what: "what potentials remember",
+            found,
+            expected,
+        }
     }
 }

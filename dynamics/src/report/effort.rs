@@ -1,12 +1,13 @@
 //! Counters of a step, with its watch and its trace.
 
-use crate::report::reason::Reason;
-use crate::report::trace::TraceEvent;
+use isosheet_model::Reason;
+use isosheet_model::TraceEvent;
 use std::fmt;
 use std::ops::ControlFlow;
 
 /// Progress of a step under way, see [`Simulation::step_watched`](crate::Simulation::step_watched).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StepProgress {
     /// End of the accepted sub-steps, seconds.
     pub t: f64,

@@ -1,12 +1,12 @@
 //! Errors of the start of a simulation.
 
-use crate::options::OptionsError;
 use crate::report::checkpoint_error::CheckpointError;
-use crate::report::contact_error::ContactError;
-use crate::report::engine_error::EngineError;
-use crate::report::step_error::StepError;
 use isosheet_linalg::LinalgError;
+use isosheet_materials::OptionsError;
 use isosheet_mesh::Advice;
+use isosheet_model::ContactError;
+use isosheet_model::EngineError;
+use isosheet_model::StepError;
 
 /// Errors of the start of a simulation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -12,8 +12,8 @@ impl Simulation {
         reactions.map(|r| (r.support, r.force.into())).collect()
     }
 
-    /// The forces of [`Simulation::body_loads`] as arrays: of the sheet on each obstacle, newtons, in the order
-    /// in which the obstacles were added. Empty without contact and in charts.
+    /// The forces of [`Simulation::body_loads`] as arrays: of the sheet on each obstacle, newtons, in the
+    /// order in which the obstacles were added. Empty without contact and in charts.
     pub fn obstacle_forces(&self) -> Vec<[f64; 3]> {
         let loads = self.body_loads().into_iter();
         loads.map(|load| load.force.into()).collect()

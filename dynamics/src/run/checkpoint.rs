@@ -175,7 +175,8 @@ impl Checkpoint {
         }
     }
 
-    /// The note that the program kept with the simulation ([`Simulation::set_note`](crate::Simulation::set_note)).
+    /// The note that the program kept with the simulation
+    /// ([`Simulation::set_note`](crate::Simulation::set_note)).
     pub fn note(&self) -> &[u8] {
         &self.note
     }

@@ -1,11 +1,11 @@
 //! Where a flat sheet of rods starts that folds to given angles.
 
-use crate::material::crease::folding_from_flat;
-use crate::vectors::diameter;
 use crate::{
     CreaseSpring, CreaseSprings, ImplicitOptions, Method, SheetModel, Simulation, State,
     StepControl, project_positions,
 };
+use isosheet_materials::folding_from_flat;
+use isosheet_materials::vectors::diameter;
 use isosheet_mesh::{EdgeId, MassMatrix, Sheet, VertexId, fold_angle};
 
 /// Part of the way to its angles at which the sheet starts. Terms of second order, by which branches differ

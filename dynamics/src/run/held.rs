@@ -8,8 +8,8 @@ use crate::run::checkpoint::SheetFingerprint;
 use crate::run::simulation::{MOTION_SPAN, Moved, Simulation};
 
 impl Simulation {
-    /// Goes on from the present state with another model and contact of the same sheet: its supports, its glue
-    /// and what touches may be others. For BDF2 and implicit Euler.
+    /// Goes on from the present state with another model and contact of the same sheet: its supports, its
+    /// glue and what touches may be others. For BDF2 and implicit Euler.
     ///
     /// Vertices that are pinned from now on stay where they are, and take the velocity of their pin at once;
     /// until the next step there are no forces of supports. What the change does to the energy at once is
@@ -38,8 +38,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError`]; then nothing has changed. [`SimulationError::Start`] if a support is not where its
-    /// vertex is, [`SimulationError::Contact`] if something touches that did not meet before,
+    /// [`SimulationError`]; then nothing has changed. [`SimulationError::Start`] if a support is not where
+    /// its vertex is, [`SimulationError::Contact`] if something touches that did not meet before,
     /// [`SimulationError::Checkpoint`] if the model is that of another sheet.
     pub fn hold_by(
         &mut self,
@@ -96,8 +96,8 @@ mod tests {
         moment / masses.iter().sum::<f64>()
     }
 
-    /// A flat sheet that is pinned everywhere lies still; once the pins let go it falls as one that starts there,
-    /// and its energy balance has no more error.
+    /// A flat sheet that is pinned everywhere lies still; once the pins let go it falls as one that starts
+    /// there, and its energy balance has no more error.
     #[test]
     fn a_released_sheet_falls_as_one_that_starts_there() {
         let mut released = simulation(model(&(0..25).collect::<Vec<_>>()));

@@ -1,8 +1,9 @@
 //! Runs of equal steps with observers.
 
 use crate::report::effort::StepProgress;
-use crate::report::step_error::{StepError, StepReport};
+use crate::report::step_report::StepReport;
 use crate::{Simulation, State};
+use isosheet_model::StepError;
 use std::ops::ControlFlow;
 
 /// Observer of a run; closures `FnMut(&Simulation, &StepReport) -> ControlFlow<()>` are observers.

@@ -6,18 +6,20 @@ use crate::contact::{
 use crate::damped::start::{check_finite, check_motions, check_potentials, check_state};
 use crate::engine::substeps::Engine as MethodEngine;
 use crate::engine::{Engine, Progress};
-use crate::model::breaks::Breaks;
-use crate::potential::At;
-use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
 use crate::report::simulation_error::SimulationError;
-use crate::report::step_error::{StepError, StepReport, StepTotals};
-use crate::report::trace::TraceEvent;
+use crate::report::step_report::StepReport;
+use crate::report::totals::StepTotals;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
+use isosheet_materials::potential::At;
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::VertexId;
+use isosheet_model::Breaks;
+use isosheet_model::StepError;
+use isosheet_model::TraceEvent;
 use std::any::Any;
 use std::ops::ControlFlow;
 
@@ -91,7 +93,8 @@ impl Simulation {
         Ok(Self::start(engine, sheet))
     }
 
-    /// A simulation of `model` from `state` that an engine from outside moves, which `build` makes of the two.
+    /// A simulation of `model` from `state` that an engine from outside moves, which `build` makes of the
+    /// two.
     ///
     /// # Errors
     /// [`SimulationError`] if the state is invalid, and those of `build`.
@@ -133,8 +136,8 @@ impl Simulation {
         Checkpoint::new(self.sheet, self.energy, motion, self.note.clone())
     }
 
-    /// Keeps a note with the simulation, which its checkpoints have too: what the program that runs it needs to
-    /// build the model and the contact again ([`Checkpoint::note`]).
+    /// Keeps a note with the simulation, which its checkpoints have too: what the program that runs it needs
+    /// to build the model and the contact again ([`Checkpoint::note`]).
     pub fn set_note(&mut self, note: Vec<u8>) {
         self.note = note;
     }
@@ -168,11 +171,13 @@ impl Simulation {
         Ok(Self::resumed(engine, sheet, energy, note))
     }
 
-    /// Resumes a simulation that an engine from outside moves, bit for bit, with the model of its start. The engine is of
-    /// this [name](Engine::name), and `build` makes it of the model and of what it [kept](Engine::kept).
+    /// Resumes a simulation that an engine from outside moves, bit for bit, with the model of its start. The
+    /// engine is of this [name](Engine::name), and `build` makes it of the model and of what it
+    /// [kept](Engine::kept).
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or engine; those of `build`.
+    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or engine; those of
+    /// `build`.
     pub fn resume_with_engine(
         model: SheetModel,
         checkpoint: Checkpoint,
@@ -304,8 +309,9 @@ impl Simulation {
     /// with itself; `None` without contact.
     ///
     /// BDF2 and implicit Euler: `-d(B + D)/dx` at the end of the last accepted sub-step, with the barrier
-    /// potential `B` and the potential `D` of lagged friction. Forces on edges and faces are distributed to their corners by the weights of the closest
-    /// point. The sum over the vertices is minus that of [`Simulation::body_loads`].
+    /// potential `B` and the potential `D` of lagged friction. Forces on edges and faces are distributed to
+    /// their corners by the weights of the closest point. The sum over the vertices is minus that of
+    /// [`Simulation::body_loads`].
     ///
     /// Before the first step there is no friction. With rigid rods the final
     /// projection changes the forces to second order, about a percent for a flat sheet at rest.
@@ -369,8 +375,9 @@ impl Simulation {
     ///
     /// At a pin `R = M a - f + G^T lambda` with the discrete acceleration `a` and the multipliers `lambda`
     /// (tension positive), at a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`.
-    /// Reactions, contact forces, weight and other forces add up to a rate of the momentum `p = sum M v`, for a
-    /// sub-step of `h` seconds without velocity damping ([`Simulation::imbalance`] says what is left of it):
+    /// Reactions, contact forces, weight and other forces add up to a rate of the momentum `p = sum M v`, for
+    /// a sub-step of `h` seconds without velocity damping ([`Simulation::imbalance`] says what is left of
+    /// it):
     ///
     /// | method | rate of `p` | weight and other forces |
     /// |---|---|---|
@@ -392,16 +399,17 @@ impl Simulation {
         }
     }
 
-    /// Says anew when what is prescribed changes abruptly (seconds), as [`SheetModel::with_breaks`] does, where a motion
-    /// is led otherwise than it was foreseen.
+    /// Says anew when what is prescribed changes abruptly (seconds), as [`SheetModel::with_breaks`] does,
+    /// where a motion is led otherwise than it was foreseen.
     pub fn set_breaks(&mut self, times: impl IntoIterator<Item = f64>) {
         if let Moved::ByMethod(engine) = &mut self.engine {
             engine.breaks = Breaks::at(times);
         }
     }
 
-    /// What all forces of the last accepted sub-step leave of the balance of forces and torques; nothing before the first
-    /// step, without supports, in charts, and by the conservative methods, which keep the balance of forces to round-off.
+    /// What all forces of the last accepted sub-step leave of the balance of forces and torques; nothing
+    /// before the first step, without supports, in charts, and by the conservative methods, which keep the
+    /// balance of forces to round-off.
     ///
     /// Of sheets without rods it costs next to nothing, of others as much as [`Simulation::reactions`].
     pub fn imbalance(&self) -> Option<Imbalance> {
@@ -411,9 +419,9 @@ impl Simulation {
         }
     }
 
-    /// Moments by which clamps along lines of vertices ([`LineClamp`](crate::LineClamp)) hold the slopes of the
-    /// sheet at the present state, newton metres, in the order of the potentials and of their clamps. With the
-    /// forces of the pins ([`Simulation::reactions`]) they are all that such a clamp does.
+    /// Moments by which clamps along lines of vertices ([`LineClamp`](crate::LineClamp)) hold the slopes of
+    /// the sheet at the present state, newton metres, in the order of the potentials and of their clamps.
+    /// With the forces of the pins ([`Simulation::reactions`]) they are all that such a clamp does.
     pub fn clamp_moments(&self) -> Vec<[f64; 3]> {
         let State { t, x, .. } = self.state();
         let at = |memory| At::new(*t, x).with_memory(memory);
@@ -435,8 +443,8 @@ impl Simulation {
     /// Zero before the first step, after a [`Fallback`](crate::Fallback), and between vertices that cannot
     /// move. Forces of dependent rods, as in a flat sheet, are not unique: BDF2 and implicit Euler give those
     /// of least squares with the same loads on the free vertices, without loads across folds flatter than 0.3
-    /// degrees, at the cost of one factorisation. (Where that fails, as with bodies whose masses differ by more than
-    /// arithmetic can take, they give one of the sets of forces with these loads.)
+    /// degrees, at the cost of one factorisation. (Where that fails, as with bodies whose masses differ by
+    /// more than arithmetic can take, they give one of the sets of forces with these loads.)
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Moved::ByMethod(engine) => engine.rod_forces(),
@@ -478,6 +486,30 @@ impl Simulation {
 
     /// Leads the hand that holds a vertex ([`Hand`](crate::Hand)) from where it is to a point (metres) until
     /// time `end` (seconds), on a straight way with a constant speed. The energy does not jump.
+    ///
+    /// ```
+    /// use isosheet_dynamics::{Hand, Method, SheetModel, Simulation, State};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(1, 0.21)?;
+    /// let corner = VertexId(20);
+    /// let hand = Hand::new(sheet.topology(), corner, 10.0, sheet.position(corner))?;
+    /// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_hand(hand);
+    /// let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// for _ in 0..60 {
+    ///     // The hand rises by 0.1 m/s.
+    ///     let t = simulation.state().t;
+    ///     let mut to = simulation.hand_target(corner)?;
+    ///     to[2] += 0.1 / 60.0;
+    ///     simulation.lead_hand(corner, to, t + 1.0 / 60.0)?;
+    ///     simulation.step(1.0 / 60.0)?;
+    /// }
+    /// assert!((simulation.state().x[62] - 0.1).abs() < 0.01);
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// [`HandError`] if there is no such hand, or the point is not finite; then nothing has changed.

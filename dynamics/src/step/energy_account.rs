@@ -1,30 +1,30 @@
 //! Bound of the energy gained by damped methods.
 
-use crate::report::step_error::StepError;
-use crate::term::Exchange;
 use crate::{SheetModel, State};
 use isosheet_linalg::norm_inf;
+use isosheet_model::StepError;
+use isosheet_model::term::Exchange;
 use serde::{Deserialize, Serialize};
 
-/// Part of the energy that friction takes by which it may differ from that by the normal forces at the end of the
-/// step. Sheets that are crumpled differ by up to a fifth where they jam for a moment, and go on; where it is more
-/// than a half, most of the friction is not that of the step.
+/// Part of the energy that friction takes by which it may differ from that by the normal forces at the end of
+/// the step. Sheets that are crumpled differ by up to a fifth where they jam for a moment, and go on; where
+/// it is more than a half, most of the friction is not that of the step.
 const UNSETTLED: f64 = 0.5;
 
-/// Part of the kinetic energy that a damped method may gain in one step. Compressed rods that snap through can
-/// feed implicit methods; shorter steps do not let them.
+/// Part of the kinetic energy that a damped method may gain in one step. Compressed rods that snap through
+/// can feed implicit methods; shorter steps do not let them.
 const GAIN: f64 = 0.1;
-/// Part of the largest kinetic energy so far that all steps together may gain: second-order methods err to either
-/// side by about that at the longest steps that resolve a motion.
+/// Part of the largest kinetic energy so far that all steps together may gain: second-order methods err to
+/// either side by about that at the longest steps that resolve a motion.
 const NET_GAIN: f64 = 0.02;
-/// Part of the work of bodies, supports and air that the trapezoidal rule may err by: its error is of the size
-/// of the difference between the forces at both ends of a step.
+/// Part of the work of bodies, supports and air that the trapezoidal rule may err by: its error is of the
+/// size of the difference between the forces at both ends of a step.
 const DRIVEN: f64 = 0.5;
-/// Relative displacement that the tolerance of the lengths, 1e-12 unless another is asked for, leaves open over
-/// ten rods in a row: over a short step it looks like a velocity, and forces do work over it.
+/// Relative displacement that the tolerance of the lengths, 1e-12 unless another is asked for, leaves open
+/// over ten rods in a row: over a short step it looks like a velocity, and forces do work over it.
 const LENGTH_NOISE: f64 = 1e-11;
-/// What forces of rods up to a thousand times the weight do over the tolerance of the lengths, relative to the
-/// energies and the work.
+/// What forces of rods up to a thousand times the weight do over the tolerance of the lengths, relative to
+/// the energies and the work.
 const ENERGY_NOISE: f64 = 1e-9;
 
 /// Energy gains of the steps of a damped method, without the work of forces, bodies and supports.
@@ -39,11 +39,13 @@ pub(crate) struct EnergyAccount {
 }
 
 impl EnergyAccount {
-    /// The account after a step between two states, with the potential energies of both at the end of the step
-    /// (joules) and the sum of the magnitudes of the components of the conservative forces there (newtons).
+    /// The account after a step between two states, with the potential energies of both at the end of the
+    /// step (joules) and the sum of the magnitudes of the components of the conservative forces there
+    /// (newtons).
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::StiffForce`], [`StepError::NonFiniteEnergy`].
+    /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::StiffForce`],
+    /// [`StepError::NonFiniteEnergy`].
     pub(crate) fn after(
         &self,
         model: &SheetModel,

@@ -20,11 +20,11 @@ pub(crate) struct History {
     /// Stiffness of the rods in the linear systems at the end of the last step, in units of that of the
     /// masses; zero for methods without such systems and before the first step.
     pub(crate) rod_stiffness: f64,
-    /// The longest sub-step that the accuracy asked for allows by the last one, seconds; none before, and where none is
-    /// asked for.
+    /// The longest sub-step that the accuracy asked for allows by the last one, seconds; none before, and
+    /// where none is asked for.
     pub(crate) longest: Option<f64>,
-    /// The part of the last change of velocities that the contact of rigid bodies made, in their order; empty where
-    /// nothing touched them.
+    /// The part of the last change of velocities that the contact of rigid bodies made, in their order; empty
+    /// where nothing touched them.
     pub(crate) body_changes: Vec<BodyChange>,
 }
 

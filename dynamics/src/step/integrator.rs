@@ -2,15 +2,16 @@
 
 use crate::contact::ContactState;
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::{StepError, StepOutcome};
+use crate::report::step_report::StepOutcome;
 use crate::step::history::{BodyChange, History, Multipliers};
 use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
-use crate::term::Exchange;
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
+use isosheet_model::StepError;
+use isosheet_model::term::Exchange;
 
 /// What an integrator moves: a sheet, with what damped steps minimise.
 pub(crate) struct Scene<'a> {

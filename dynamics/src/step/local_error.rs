@@ -1,8 +1,8 @@
 //! The error that a step of a damped method adds, estimated from velocities that are there anyway.
 
-use crate::model::PINNED;
-use crate::term::Formula;
 use crate::{SheetModel, State};
+use isosheet_model::PINNED;
+use isosheet_model::term::Formula;
 
 /// An estimate of the error that a step adds to the positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,8 @@ pub(crate) struct LocalError {
 }
 
 impl LocalError {
-    /// Of a step from `start` to `end`, where `before` is the state before `start` that the formula of two steps used.
+    /// Of a step from `start` to `end`, where `before` is the state before `start` that the formula of two
+    /// steps used.
     ///
     /// With the lengths `h` of the step and `h / w` of the one before, BDF2 leaves
     ///
@@ -23,9 +24,10 @@ impl LocalError {
     /// x''' = 2 w (v1 - v0 - w (v0 - v_)) / (h^2 (1 + w)) + O(h),
     /// ```
     ///
-    /// if it begins with exact values, which makes `h (1 + w) / (3 (1 + 2 w)) |v1 - v0 - w (v0 - v_)|`, and implicit
-    /// Euler `h / 2 |v1 - v0|` (E. Hairer, S. P. Noersett and G. Wanner, "Solving Ordinary Differential Equations I",
-    /// Sec. III.5). Where contact changes a velocity within a step both are of first order in `h`, as the error is.
+    /// if it begins with exact values, which makes `h (1 + w) / (3 (1 + 2 w)) |v1 - v0 - w (v0 - v_)|`, and
+    /// implicit Euler `h / 2 |v1 - v0|` (E. Hairer, S. P. Noersett and G. Wanner, "Solving Ordinary
+    /// Differential Equations I", Sec. III.5). Where contact changes a velocity within a step both are of
+    /// first order in `h`, as the error is.
     pub(crate) fn of(
         model: &SheetModel,
         before: Option<&State>,
@@ -72,8 +74,8 @@ mod tests {
     use super::*;
     use isosheet_mesh::{MassKind, generate};
 
-    /// The error of one step of the motion `x = t^p`, `v = p t^(p-1)`, for all coordinates, from exact values; the
-    /// velocity at the end follows from the formula.
+    /// The error of one step of the motion `x = t^p`, `v = p t^(p-1)`, for all coordinates, from exact
+    /// values; the velocity at the end follows from the formula.
     fn step(power: i32, steps: [f64; 2], formula: Formula) -> (f64, f64) {
         let sheet = generate::isotropic_square(1, 0.21).unwrap();
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();

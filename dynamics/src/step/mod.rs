@@ -1,5 +1,5 @@
-//! What all chart-free methods share of a step: states, proposals, forces of supports and rods, the account of
-//! the energy.
+//! What all chart-free methods share of a step: states, proposals, forces of supports and rods, the account
+//! of the energy.
 
 pub(crate) mod energy_account;
 pub(crate) mod history;

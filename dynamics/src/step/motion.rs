@@ -1,12 +1,12 @@
 //! The state of a chart-free simulation, as one value.
 
 use crate::contact::ContactState;
-use crate::potential::Memories;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::energy_account::EnergyAccount;
 use crate::step::history::History;
 use crate::step::reaction::Balance;
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
 use serde::{Deserialize, Serialize};
 
 /// A point of a motion: all that the next step depends on besides the scene and the options of the method. A
@@ -21,8 +21,8 @@ pub(crate) struct Motion {
     pub(crate) memories: Memories,
     /// Forces of the supports in the step that ended here. Meaningless before the first step.
     pub(crate) balance: Balance,
-    /// The contacts at the state, with the barrier and the friction of the step that ended here; `None` without
-    /// contact.
+    /// The contacts at the state, with the barrier and the friction of the step that ended here; `None`
+    /// without contact.
     pub(crate) contacts: Option<ContactState>,
     /// The energy that a damped method has gained.
     pub(crate) account: EnergyAccount,
@@ -71,8 +71,8 @@ impl Motion {
         }
     }
 
-    /// Refuses arrays of the wrong length and numbers that are not finite, which a checkpoint that was changed
-    /// from outside may have.
+    /// Refuses arrays of the wrong length and numbers that are not finite, which a checkpoint that was
+    /// changed from outside may have.
     pub(crate) fn check(&self, model: &SheetModel, fixed: &[u32]) -> Result<(), CheckpointError> {
         self.check_lengths(model, fixed)?;
         self.check_numbers()

@@ -1,13 +1,13 @@
 //! Forces of supports on the sheet.
 
-use crate::constraint::rows::VertexRows;
-use crate::potential::Memories;
+use crate::linear::constraint_rows::VertexRows;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
-use crate::report::support::Support;
 use crate::step::residual_momentum::ResidualMomentum;
-use crate::vectors::{add, point};
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
+use isosheet_model::Support;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -20,8 +20,9 @@ pub struct Reaction {
     pub force: Vector3<f64>,
 }
 
-/// What the forces of supports leave of the balance of forces and torques of a sub-step: reactions, contact, weight and
-/// all other forces, less the rate of the momentum ([`Simulation::reactions`](crate::Simulation::reactions)).
+/// What the forces of supports leave of the balance of forces and torques of a sub-step: reactions, contact,
+/// weight and all other forces, less the rate of the momentum
+/// ([`Simulation::reactions`](crate::Simulation::reactions)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Imbalance {
     /// Sum of all forces, newtons; zero where they balance.
@@ -307,8 +308,9 @@ impl Balance {
         pins.chain(constraints).collect()
     }
 
-    /// What the [reactions](Self::reactions) leave of the balance at the end of a step: the forces at free vertices, less
-    /// the part of them that rods and supports take. Known for forces at the end of a step alone.
+    /// What the [reactions](Self::reactions) leave of the balance at the end of a step: the forces at free
+    /// vertices, less the part of them that rods and supports take. Known for forces at the end of a step
+    /// alone.
     pub(crate) fn imbalance(&self, model: &SheetModel, state: &State) -> Option<Imbalance> {
         if self.time != ForceTime::End || self.pins.is_empty() {
             return None;

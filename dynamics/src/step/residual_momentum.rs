@@ -130,9 +130,9 @@ impl ResidualMomentum {
         }
     }
 
-    /// Forces of the supports that, with tensions of the rods, balance the momentum of every entry at time `t`,
-    /// see [`shares`]: a factorisation for each entry. (One entry, at the end of the step, would leave up to a
-    /// thousandth of the forces of a nearly flat sheet: its rods turn in a restoration.)
+    /// Forces of the supports that, with tensions of the rods, balance the momentum of every entry at time
+    /// `t`, see [`shares`]: a factorisation for each entry. (One entry, at the end of the step, would leave
+    /// up to a thousandth of the forces of a nearly flat sheet: its rods turn in a restoration.)
     pub(crate) fn shares(&self, model: &SheetModel, t: f64) -> Shares {
         let mut sum = Shares::none(model);
         for Entry {

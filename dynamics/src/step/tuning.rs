@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
-/// The constants of a step of the damped methods. Not an option: they are named in one place, and written at the head of
-/// a trace. The factorisations that other values cost are means over fifteen kinds of scene with eight starts each.
+/// The constants of a step of the damped methods. Not an option: they are named in one place, and written at
+/// the head of a trace. The factorisations that other values cost are means over fifteen kinds of scene with
+/// eight starts each.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Tuning {
-    /// `max_iterations` over this is the largest number of iterations of SQP in contact and of a restoration in
-    /// SQP, 20 by default: a draping sheet needs three to six, an impact more where contact cuts them. With 2
-    /// and 8 a stamped sheet needs 1.2 and 2.3 times the factorisations; with whole restorations heavy parts
-    /// need 1.1 times.
+    /// `max_iterations` over this is the largest number of iterations of SQP in contact and of a restoration
+    /// in SQP, 20 by default: a draping sheet needs three to six, an impact more where contact cuts them.
+    /// With 2 and 8 a stamped sheet needs 1.2 and 2.3 times the factorisations; with whole restorations heavy
+    /// parts need 1.1 times.
     pub iteration_share: f64,
     /// Edge strain that iterates of SQP may have, and largest displacement, in rod lengths, that opens a flat
     /// patch in a restoration. With 0.1 and 0.2 hanging sheets need 1.1 and 1.2 times the factorisations.
@@ -21,11 +22,11 @@ pub struct Tuning {
     /// Edge strain from which the restoration at the end of a phase is a small displacement. With twice the
     /// value a sheet that is fed into a corner needs 2.5 times the factorisations.
     pub small_strain: f64,
-    /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers. These
-    /// are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `ConstrainedSolver` takes
-    /// the regularisation out again. With 1e9 needles a million times longer than wide lock, with 1e11 steps
-    /// keep momentum and symmetries no longer to round-off. Restorations, which crumpled sheets need softer,
-    /// start from a penalty of one growth less.
+    /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers.
+    /// These are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `ConstrainedSolver`
+    /// takes the regularisation out again. With 1e9 needles a million times longer than wide lock, with 1e11
+    /// steps keep momentum and symmetries no longer to round-off. Restorations, which crumpled sheets need
+    /// softer, start from a penalty of one growth less.
     pub first_stiffness: f64,
     /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers, once
     /// these have not converged with the first stiffness, and in contact; also the largest penalty of a
@@ -46,21 +47,22 @@ pub struct Tuning {
     /// stationary iterate. With half the value sheets flat on a table need three times the factorisations,
     /// with 0.99 slivers 1.3 times.
     pub slow: f64,
-    /// How often something may be in vain before it is given up: such iterations in a row, which make an iterate
-    /// stationary (with 2 and 8 a sheet that is fed into a corner needs 1.3 times the factorisations, and one
-    /// flat on a table 1.6 times), and displacements that open a flat patch in contact (with 2 one flat on a
-    /// table needs 2.4 times). So many sub-steps are accepted after a refusal before a longer one is tried.
+    /// How often something may be in vain before it is given up: such iterations in a row, which make an
+    /// iterate stationary (with 2 and 8 a sheet that is fed into a corner needs 1.3 times the factorisations,
+    /// and one flat on a table 1.6 times), and displacements that open a flat patch in contact (with 2 one
+    /// flat on a table needs 2.4 times). So many sub-steps are accepted after a refusal before a longer one
+    /// is tried.
     pub patience: f64,
     /// Growth of the displacement that opens a flat patch in a restoration from one attempt to the next: the
-    /// next one has to leave the basin that the last one fell back into. With half the value a sheet flat on a
-    /// table needs 2.8 times the factorisations.
+    /// next one has to leave the basin that the last one fell back into. With half the value a sheet flat on
+    /// a table needs 2.8 times the factorisations.
     pub opening_growth: f64,
     /// Displacement that leaves a saddle, largest component in mean rod lengths; along negative curvature a
     /// tenth of it is tried as well. Strains grow with its square: with 1e-2 a sheet of 8192 triangles takes
     /// three times as many factorisations in steps of 0.25 ms; up to 512 triangles there is no difference.
     pub perturbation: f64,
-    /// Relative change of normal forces below which friction counts as settled in the augmented Lagrangian. With
-    /// 1e-3 sheets that are stamped or fed into a corner need 1.2 times the factorisations.
+    /// Relative change of normal forces below which friction counts as settled in the augmented Lagrangian.
+    /// With 1e-3 sheets that are stamped or fed into a corner need 1.2 times the factorisations.
     pub friction_settled: f64,
 }
 

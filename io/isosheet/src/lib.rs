@@ -41,9 +41,10 @@ pub use isosheet_mesh as mesh;
 pub mod prelude {
     pub use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
     pub use isosheet_dynamics::{
-        Air, Checkpoint, CreaseSprings, Frames, History, Isotropic, Material, Method, Observer,
-        PointProfile, Profile, RigidDisplacement, SheetModel, Simulation, State, StepError,
-        StepReport, Support, VertexLoad,
+        Air, At, Checkpoint, CreaseSprings, Force, Frames, HessianSink, History, Isotropic,
+        Material, Method, Observer, PointProfile, Potential, Profile, RigidDisplacement,
+        SheetModel, Simulation, State, StepError, StepReport, Support, VertexConstraint,
+        VertexLoad,
     };
     pub use isosheet_formats::{read_sheet, write_mesh, write_series};
     pub use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, Sheet, VertexId, generate};

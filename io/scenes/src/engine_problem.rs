@@ -5,7 +5,8 @@ use super::key::{Key, KeyPart};
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
 use isosheet_dynamics::{
-    CheckpointError, Driver, Reason, SheetModel, Simulation, SimulationError, StepError, Support,
+    CheckpointError, Driver, LimitError, Reason, SheetModel, Simulation, SimulationError,
+    StepError, Support,
 };
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Part, VertexId};
@@ -301,12 +302,12 @@ impl Origins {
                 "pull less, hold more than a vertex where the sheet is pulled, or raise the limit, `isometry = { elastic = { \
                  limit = ... } }`",
             ),
-            StepError::SwellingBeyondLimit { .. } => (
+            StepError::Limit(LimitError::SwellingBeyondLimit { .. }) => (
                 root.name("sheet.swell"),
                 "let it change more slowly, or less where the sheet is held, or raise the limit, `isometry = { elastic = { \
                  limit = ... } }`",
             ),
-            StepError::Swelling { .. } => (
+            StepError::Limit(LimitError::Swelling { .. }) => (
                 root.name("sheet.swell"),
                 "end the run before that, or give a function of time from -0.2 to 0.2",
             ),

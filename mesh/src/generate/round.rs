@@ -21,7 +21,8 @@ pub fn disk(rings: usize, radius: f64) -> Result<Sheet, GenerateError> {
     })
 }
 
-/// Triangles in rings about vertex 0, the origin. Vertex k of `side` on ring r is at `place(r, side, k)`, 0 <= k < r.
+/// Triangles in rings about vertex 0, the origin. Vertex k of `side` on ring r is at `place(r, side, k)`, 0
+/// <= k < r.
 pub(super) fn rings_about_centre(
     sides: usize,
     rings: usize,
@@ -67,8 +68,8 @@ pub(super) fn rings_about_centre(
 /// A flat fan: `triangles` equal isosceles triangles with legs `radius` (metres) about a common apex at the
 /// origin, together `opening` radians wide, starting on the x axis.
 ///
-/// The apex is vertex 0 and lies on the boundary; use [`polygon_rings`](super::polygon_rings) with one ring for a
-/// closed wheel.
+/// The apex is vertex 0 and lies on the boundary; use [`polygon_rings`](super::polygon_rings) with one ring
+/// for a closed wheel.
 ///
 /// # Errors
 /// [`GenerateError`] for no triangle, a size that is not positive, an opening of 2 pi or more (the ends would

@@ -38,6 +38,7 @@ impl PlaneOptions {
 
 /// A triangle mesh in the plane whose edges follow the pieces of a graph.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlaneMesh {
     /// The vertices, metres. Cuts have one vertex, not yet two.
     pub points: Vec<[f64; 2]>,

@@ -9,8 +9,8 @@ use std::ops::Range;
 /// Lines may meet so often in any drawing: a grid of 256 lines each way and more.
 const LEAST: usize = 1 << 17;
 
-/// They may meet so often for each line: where eight lines end in a point, each of them meets fourteen others, at both
-/// ends, and each pair is one.
+/// They may meet so often for each line: where eight lines end in a point, each of them meets fourteen
+/// others, at both ends, and each pair is one.
 const TIMES: usize = 8;
 
 /// A leaf of the tree has at most so many shapes.
@@ -82,7 +82,8 @@ impl Turned {
             .map(|[a, b]| [0, 1].map(|k| self.centre[k] + a * u[k] + b * v[k]))
     }
 
-    /// Whether a line parts it from another one with a gap wider than the reach. (Numbers that are not finite part nothing.)
+    /// Whether a line parts it from another one with a gap wider than the reach. (Numbers that are not finite
+    /// part nothing.)
     fn is_apart(&self, other: &Self, reach: f64) -> bool {
         let away = sub(other.centre, self.centre);
         let parts = |axis: Point| {
@@ -216,8 +217,8 @@ impl Nearby {
     }
 }
 
-/// Calls `visit` for all pairs of shapes whose boxes are at most `reach` apart, each pair once and in order. The corners of
-/// a shape that is a line are its ends, and a point between them.
+/// Calls `visit` for all pairs of shapes whose boxes are at most `reach` apart, each pair once and in order.
+/// The corners of a shape that is a line are its ends, and a point between them.
 ///
 /// # Errors
 /// [`PlaneError::TooManyMeetings`] for more pairs than a drawing of so many lines has.

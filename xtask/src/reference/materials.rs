@@ -95,7 +95,7 @@ pub(super) fn page() -> String {
     }
     page.push_str(
         "\nOne gf cm2/cm, the unit of bending rigidity of the instruments of Kawabata, is 9.8e-5 N m; 500 gf/cm are \
-         490 N/m. This page is made of the catalogue in `dynamics/src/material/`.\n",
+         490 N/m. This page is made of the catalogue in `dynamics/materials/src/`.\n",
     );
     page
 }

@@ -49,7 +49,8 @@ use thiserror::Error;
 ///         let around = Vector3::z().cross(&out);
 ///         let tilt = around.cross(&normal);
 ///         // The normal turns about the circle, and with the circle about the axis.
-///         let [tilting, turning] = [1.0 / d, normal.dot(&out) / rho].map(|c| if c.is_finite() { c } else { 0.0 });
+///         let curvatures = [1.0 / d, normal.dot(&out) / rho];
+///         let [tilting, turning] = curvatures.map(|c| if c.is_finite() { c } else { 0.0 });
 ///         SignedDistance {
 ///             value: d - self.tube,
 ///             normal,

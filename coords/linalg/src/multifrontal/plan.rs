@@ -5,10 +5,10 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use std::ops::Range;
 
-/// Multiplications of a factorisation from which its subtrees are shared among the threads of rayon's current pool.
-/// To wake a thread takes 0.1 ms, so that two threads need 1.05 times the time of one for factorisations in steps of
-/// sheets of 688 and 876 vertices (7 to 10 million multiplications), 0.97 times for 1089 vertices (10 million) and
-/// 0.82 times for 4225 vertices (84 million).
+/// Multiplications of a factorisation from which its subtrees are shared among the threads of rayon's current
+/// pool. To wake a thread takes 0.1 ms, so that two threads need 1.05 times the time of one for
+/// factorisations in steps of sheets of 688 and 876 vertices (7 to 10 million multiplications), 0.97 times
+/// for 1089 vertices (10 million) and 0.82 times for 4225 vertices (84 million).
 pub(super) const WORTH_SHARING: f64 = 2e7;
 
 /// Adjacent columns of the factor with the same rows below.
@@ -79,14 +79,14 @@ pub(super) struct Plan {
     pub(super) entries: Vec<[u32; 2]>,
     /// Of each row of a front its place in the parent, among columns and rows.
     pub(super) places: Vec<u32>,
-    /// Each row of a front as a number of an unknown: in subtrees counted from the first unknown of the subtree, and
-    /// those [above](Subtree::above) after its own.
+    /// Each row of a front as a number of an unknown: in subtrees counted from the first unknown of the
+    /// subtree, and those [above](Subtree::above) after its own.
     pub(super) rows: Vec<u32>,
     /// The unknowns above each subtree on which it depends.
     pub(super) above: Vec<u32>,
     pub(super) children: Vec<u32>,
-    /// The largest subtrees with no more than half of the operations each; whole trees where so few operations are not
-    /// shared.
+    /// The largest subtrees with no more than half of the operations each; whole trees where so few
+    /// operations are not shared.
     pub(super) subtrees: Vec<Subtree>,
     /// The fronts above them, each but the first the parent of the one before.
     pub(super) trunk: Vec<u32>,

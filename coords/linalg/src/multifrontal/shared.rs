@@ -3,10 +3,10 @@
 use super::plan::{Plan, Subtree, WORTH_SHARING};
 
 /// A part of an array, with the place in the array where the part begins.
-pub(super) type Part<'a> = (usize, &'a mut [f64]);
+pub(super) type FrontValues<'a> = (usize, &'a mut [f64]);
 
 /// Cuts a part of an array in two at a place in the array.
-fn cut((start, part): Part<'_>, place: usize) -> (Part<'_>, Part<'_>) {
+fn cut((start, part): FrontValues<'_>, place: usize) -> (FrontValues<'_>, FrontValues<'_>) {
     let (left, right) = part.split_at_mut(place - start);
     ((start, left), (place, right))
 }
@@ -20,10 +20,10 @@ pub(super) trait Job<const N: usize>: Sync {
     fn begins(&self, subtree: &Subtree) -> [usize; N];
 
     /// Does it. The parts contain those of the subtree.
-    fn run(&self, subtree: &Subtree, parts: [Part<'_>; N]) -> Result<(), Self::Error>;
+    fn run(&self, subtree: &Subtree, parts: [FrontValues<'_>; N]) -> Result<(), Self::Error>;
 
-    /// Does it to all subtrees of a plan, with the same result for any number of threads. (A thread that waits for
-    /// another one may take up other work of the pool.)
+    /// Does it to all subtrees of a plan, with the same result for any number of threads. (A thread that
+    /// waits for another one may take up other work of the pool.)
     fn run_all(&self, plan: &Plan, arrays: [&mut [f64]; N]) -> Result<(), Self::Error>
     where
         Self: Sized,
@@ -43,7 +43,7 @@ pub(super) trait Job<const N: usize>: Sync {
 fn share<const N: usize, J: Job<N>>(
     job: &J,
     subtrees: &[Subtree],
-    parts: [Part<'_>; N],
+    parts: [FrontValues<'_>; N],
 ) -> Result<(), J::Error> {
     match subtrees {
         [] => Ok(()),

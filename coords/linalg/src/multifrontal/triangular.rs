@@ -1,11 +1,11 @@
-//! Triangular solves with the supernodal factor of a sparse matrix and one right-hand side, on the threads of rayon's
-//! current pool.
+//! Triangular solves with the supernodal factor of a sparse matrix and one right-hand side, on the threads of
+//! rayon's current pool.
 //!
 //! faer's solve multiplies dense matrices for each supernode. With one right-hand side and supernodes of
 //! a few columns that takes 1.4 to 1.6 times as long as the loops here (243 to 12 675 unknowns).
 
 use super::plan::{Front, Plan, Subtree};
-use super::shared::{Job, Part};
+use super::shared::{FrontValues, Job};
 use std::convert::Infallible;
 
 /// Columns of a supernode that are applied together. Coordinates of a vertex are eliminated one after
@@ -155,7 +155,11 @@ impl Job<1> for Pass<'_> {
         [subtree.local.start]
     }
 
-    fn run(&self, subtree: &Subtree, [(start, part)]: [Part<'_>; 1]) -> Result<(), Infallible> {
+    fn run(
+        &self,
+        subtree: &Subtree,
+        [(start, part)]: [FrontValues<'_>; 1],
+    ) -> Result<(), Infallible> {
         let local = &mut part[subtree.local.start - start..subtree.local.end - start];
         let (x, scratch) = local.split_at_mut(subtree.columns.len() + subtree.above.len());
         let fronts = &self.factor.plan.fronts[subtree.fronts.clone()];
@@ -172,8 +176,8 @@ impl Job<1> for Pass<'_> {
 
 /// Solves `L L^T x = b` in place, in the order of the factor, with room for the local values of the plan.
 ///
-/// Each subtree has values of its own for the unknowns above, which are added in the order of the subtrees, so that
-/// sums do not depend on the number of threads.
+/// Each subtree has values of its own for the unknowns above, which are added in the order of the subtrees,
+/// so that sums do not depend on the number of threads.
 pub(super) fn solve(factor: Factor<'_>, x: &mut [f64], locals: &mut [f64]) {
     let plan = factor.plan;
     let pass = |direction, locals: &mut [f64]| {

@@ -3,20 +3,22 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Keeps the other threads of rayon's current pool awake for as long as it lives, if this one belongs to a pool.
+/// Keeps the other threads of rayon's current pool awake for as long as it lives, if this one belongs to a
+/// pool.
 ///
-/// A thread without work falls asleep within some 20 microseconds, and to wake it takes 0.1 ms: much of the time that
-/// the pieces of an iteration take. Threads that stay awake look for work, and let other programs run where there is none
-/// for longer; they use processor time. Those that keep others awake themselves, as in ensembles of runs, do not stay for anyone else.
+/// A thread without work falls asleep within some 20 microseconds, and to wake it takes 0.1 ms: much of the
+/// time that the pieces of an iteration take. Threads that stay awake look for work, and let other programs
+/// run where there is none for longer; they use processor time. Those that keep others awake themselves, as
+/// in ensembles of runs, do not stay for anyone else.
 #[derive(Debug)]
 pub struct Awake {
     /// Nothing where the thread has kept others awake before.
     held: Option<Arc<Watch>>,
 }
 
-/// How often a thread looks for work before it lets other programs run: for about the 0.1 ms that it takes to wake a
-/// thread, as most pauses between the pieces of an iteration are not longer. (A program that is let run may keep the core
-/// for milliseconds.)
+/// How often a thread looks for work before it lets other programs run: for about the 0.1 ms that it takes to
+/// wake a thread, as most pauses between the pieces of an iteration are not longer. (A program that is let
+/// run may keep the core for milliseconds.)
 const PATIENCE: usize = 1000;
 
 /// What a thread asks of others.

@@ -94,8 +94,8 @@ fn two_things_are_done_side_by_side() {
     assert_eq!(met, (true, true));
 }
 
-/// Threads that stay awake for one that has many steps, and for one within another, take up other work and go to sleep
-/// at the end; jobs to stay do not pile up.
+/// Threads that stay awake for one that has many steps, and for one within another, take up other work and go
+/// to sleep at the end; jobs to stay do not pile up.
 #[test]
 fn threads_stay_awake_only_as_long_as_they_are_asked_to() {
     let done = on_threads(2, || {

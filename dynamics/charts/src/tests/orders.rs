@@ -300,9 +300,9 @@ fn published_equations_do_not_converge() {
     }
 }
 
-/// What Eqs. 23 and 24 suppose: that along the exact motion of the equations the Hamiltonian does not change, so
-/// that its change in a step comes from the remainder, which falls with the square of the step. With the published
-/// equations it changes by `h qdot . dT/dq`, in proportion to the step.
+/// What Eqs. 23 and 24 suppose: that along the exact motion of the equations the Hamiltonian does not change,
+/// so that its change in a step comes from the remainder, which falls with the square of the step. With the
+/// published equations it changes by `h qdot . dT/dq`, in proportion to the step.
 #[test]
 fn the_hamiltonian_changes_to_first_order_with_the_published_equations() {
     let mut v = vec![0.0; 27];

@@ -2,22 +2,23 @@
 
 use super::problem::StepProblem;
 use crate::SheetModel;
-use crate::constraint::rows::{RowLoad, VertexRows};
 use crate::diagnosis::potentials::{Differences, find_fault};
-use crate::hessian::HessianPart;
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
 };
+use crate::linear::constraint_rows::{RowLoad, VertexRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::{Refused, StepError};
-use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
-use crate::vectors::dot;
 use isosheet_linalg::{LinalgError, norm_inf};
+use isosheet_materials::Refused;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::VertexId;
+use isosheet_model::Cut;
+use isosheet_model::PINNED;
+use isosheet_model::StepError;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -27,9 +28,9 @@ use rand_chacha::ChaCha8Rng;
 /// above the start of its step by so many times the round-off of both.
 pub(super) const OPERATIONS: f64 = 8.0;
 
-/// Penalty of vertex constraints that are solved for, relative to the stiffness of masses and potentials at their
-/// vertices: a solution of the linear system leaves a millionth of an error, and round-off that is as far below the
-/// stiffness along the surface.
+/// Penalty of vertex constraints that are solved for, relative to the stiffness of masses and potentials at
+/// their vertices: a solution of the linear system leaves a millionth of an error, and round-off that is as
+/// far below the stiffness along the surface.
 const SUPPORT_STIFFNESS: f64 = 1e6;
 
 /// The augmented Lagrangian at an iterate,
@@ -317,7 +318,8 @@ impl Lagrangian {
         })
     }
 
-    /// Refuses potentials whose Hessians cannot be used at the iterate, though their energies are finite there.
+    /// Refuses potentials whose Hessians cannot be used at the iterate, though their energies are finite
+    /// there.
     ///
     /// # Errors
     /// [`StepError::Potential`].

@@ -4,15 +4,16 @@ use super::lagrangian::{Definiteness, Merit};
 use super::phase::{MultiplierUpdate, Phase, Saddle, StartingPoint};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
-use crate::constraint::rows::RowLoad;
 use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
-use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
+use crate::linear::constraint_rows::RowLoad;
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome};
-use crate::report::trace::{Continuation, Cut, TraceEvent};
+use crate::report::step_report::StepOutcome;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::{Continuation, Cut, TraceEvent};
 
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]
@@ -491,7 +492,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         self.work.restore(self.problem, to, self.effort) <= to.strain
     }
 
-    /// Size of decreases that are noise of the lengths, besides round-off: a part of the energy `tolerance * sum
+    /// Size of decreases that are noise of the lengths, besides round-off: a part of the energy
+    /// `tolerance * sum
     /// |L| l^2` that the tolerance of the lengths leaves open, whose errors have different signs. Where there
     /// are finite multipliers the iteration has converged after some iterations, and small motions of taut
     /// sheets are below that size; where there are none, the last decreases fall as the inverse of the number
@@ -630,9 +632,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         Ok(false)
     }
 
-    /// Whether round after round has left most of the strain, and its lengths could not be restored: multipliers
-    /// that exist gain a digit in each round, and where rods depend on each other there are none. (A sheet that
-    /// jams took fifty thousand factorisations for a step of eighty rounds.)
+    /// Whether round after round has left most of the strain, and its lengths could not be restored:
+    /// multipliers that exist gain a digit in each round, and where rods depend on each other there are none.
+    /// (A sheet that jams took fifty thousand factorisations for a step of eighty rounds.)
     fn has_stalled(&mut self, strain: f64) -> bool {
         let tuning = &self.work.tuning;
         self.stalled = match strain > tuning.slow * self.unrestored {

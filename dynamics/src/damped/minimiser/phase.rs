@@ -105,16 +105,16 @@ impl Phase {
     /// | SQP | start of the step | of the step before (in contact none); solved for | near the lengths | 1 |
     /// | augmented Lagrangian | prediction | none; by rounds | free | many loose ones in contact |
     ///
-    /// Elastic sheets alone have no rods to solve for, and pins that move in contact stall SQP: both have the second
-    /// row alone. Without rods the multipliers of curves and surfaces are solved for there too, as in the first one.
-    /// Slivers begin with it without contact, with its own multipliers of the step before.
+    /// Elastic sheets alone have no rods to solve for, and pins that move in contact stall SQP: both have the
+    /// second row alone. Without rods the multipliers of curves and surfaces are solved for there too, as in
+    /// the first one. Slivers begin with it without contact, with its own multipliers of the step before.
     ///
     /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
-    /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the second
-    /// row has the iterations of the first one (sheets of 289 vertices that fall onto a table take 2000 to
-    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps go on); without contact it
-    /// has the restorations of the first one (a sheet of 4225 vertices that hangs for a second takes 1535
-    /// factorisations instead of 2375).
+    /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the
+    /// second row has the iterations of the first one (sheets of 289 vertices that fall onto a table take
+    /// 2000 to 3000 factorisations in half a second, and 3000 to 12 000 where whole steps go on); without
+    /// contact it has the restorations of the first one (a sheet of 4225 vertices that hangs for a second
+    /// takes 1535 factorisations instead of 2375).
     pub(super) fn table(
         problem: &StepProblem<'_>,
         faces: Faces,

@@ -1,13 +1,13 @@
 //! The problem of one implicit step.
 
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::step::integrator::Phases;
-use crate::term::{Iterate, StepStart};
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
+use isosheet_model::term::{Iterate, StepStart};
 
-/// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept at
-/// the end of the step.
+/// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept
+/// at the end of the step.
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,

@@ -3,7 +3,7 @@
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::report::effort::SolverEffort;
-use crate::report::trace::Cut;
+use isosheet_model::Cut;
 
 impl Lagrangian {
     /// Corrects the step `-dx`, of which only the part `limit` is safe, for gaps that close faster than to

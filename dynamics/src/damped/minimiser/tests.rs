@@ -3,18 +3,18 @@
 use super::Minimiser;
 use super::lagrangian::{Definiteness, Lagrangian};
 use super::problem::StepProblem;
-use crate::constraint::rows::RowLoad;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
-use crate::hessian::HessianPart;
+use crate::linear::constraint_rows::RowLoad;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
-use crate::term::{Formula, StepStart};
 use crate::{CreaseSprings, ElasticSheet, ImplicitOptions, PlateBending, SheetModel, State};
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use isosheet_model::term::{Formula, StepStart};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 

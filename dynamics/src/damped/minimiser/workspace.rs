@@ -3,13 +3,13 @@
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::damped::restoration::{Barriers, FirstMatrix, Restoration, RestorationGoal};
-use crate::model::round_off::strain_floor;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepError;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_linalg::LinalgError;
+use isosheet_model::StepError;
+use isosheet_model::strain_floor;
 
 /// The Lagrangian at the iterate, the restoration of the lengths, and what one step leaves to the next.
 pub(crate) struct Workspace {

@@ -5,14 +5,14 @@ use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 /// The four vertices of a rigid body.
-pub(super) struct Body {
+pub(super) struct ImpactBody {
     pub(super) first: usize,
     mass: Matrix4<f64>,
     /// Velocities of the vertices (12) in the motions that guides leave to the body, by columns.
     motions: DMatrix<f64>,
 }
 
-impl Body {
+impl ImpactBody {
     pub(super) fn new(model: &SheetModel, state: &State, first: usize) -> Self {
         let place = |k: usize| {
             let v = 3 * (first + k);

@@ -18,21 +18,21 @@ pub(in crate::damped) struct HandedOn {
     pub(in crate::damped) changes: Vec<BodyChange>,
 }
 
-/// What a step with the coefficient `b` repeats of the changes `u` (`last`) that the contact of bodies made in
-/// the last change `v0 - v_` of their velocities.
+/// What a step with the coefficient `b` repeats of the changes `u` (`last`) that the contact of bodies made
+/// in the last change `v0 - v_` of their velocities.
 ///
-/// The restitution of a step takes `u / 2` for what is still to come, which is so if each step repeats a third.
-/// A longer step than the one before has `b > 1/3` and would repeat more, so that bodies part too fast; a shorter
-/// one would repeat less, and what they have lost in the account is not taken from them. So `v_` becomes
-/// `v_ + (1 - 1 / (3 b)) c u`, with the part `c` of `u` that is in `v0 - v_` at all,
+/// The restitution of a step takes `u / 2` for what is still to come, which is so if each step repeats a
+/// third. A longer step than the one before has `b > 1/3` and would repeat more, so that bodies part too
+/// fast; a shorter one would repeat less, and what they have lost in the account is not taken from them. So
+/// `v_` becomes `v_ + (1 - 1 / (3 b)) c u`, with the part `c` of `u` that is in `v0 - v_` at all,
 ///
 /// ```text
 /// c = <v0 - v_, u>_M / <u, u>_M,     0 <= c <= 1,
 /// ```
 ///
-/// for all bodies together that have pushed one another: what one of them loses the others gain. Of bodies that
-/// hit one another `c` is 1. Bodies that rest under a load do not change their velocities, `c` is 0, and the
-/// formula remains that of second order.
+/// for all bodies together that have pushed one another: what one of them loses the others gain. Of bodies
+/// that hit one another `c` is 1. Bodies that rest under a load do not change their velocities, `c` is 0, and
+/// the formula remains that of second order.
 pub(in crate::damped) fn handed_on(
     model: &SheetModel,
     ends: Option<[&State; 2]>,

@@ -1,6 +1,6 @@
 //! What a driver does.
 
-use crate::report::infeasibility::Driver;
+use isosheet_model::Driver;
 
 /// What a driver does between the state and the time for which positions are sought, at the minimum.
 #[derive(Debug, Clone, Copy)]

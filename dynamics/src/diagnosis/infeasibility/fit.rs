@@ -2,16 +2,16 @@
 
 use super::driver::Drive;
 use super::gaps::Gaps;
-use crate::constraint::rows::{RowLoad, VertexRows};
-use crate::hessian::HessianPart;
+use crate::linear::constraint_rows::{RowLoad, VertexRows};
 use crate::linear::primal::PrimalMatrix;
-use crate::material::elastic_sheet::{ElasticSheet, StrainOfFace};
-use crate::potential::At;
-use crate::report::infeasibility::Driver;
-use crate::report::support::Support;
-use crate::vectors::{add, point};
 use crate::{Potential, SheetModel, State};
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::potential::At;
+use isosheet_materials::vectors::{add, point};
+use isosheet_materials::{ElasticSheet, StrainOfFace};
 use isosheet_mesh::VertexId;
+use isosheet_model::Driver;
+use isosheet_model::Support;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -177,8 +177,8 @@ impl<'a> Fit<'a> {
         excess.worst(At::new(self.t, &self.x))
     }
 
-    /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the rods of
-    /// a sheet.
+    /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the
+    /// rods of a sheet.
     pub(super) fn strain_limit(&self) -> Option<f64> {
         let worst = self.worst()?;
         let is_of_rods =

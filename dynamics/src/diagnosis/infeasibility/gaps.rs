@@ -1,10 +1,11 @@
 //! Gaps between the sheet and bodies, linearised at a state.
 
 use super::driver::Drive;
+use crate::State;
 use crate::contact::{ContactState, ContactTerm, CouplingSink, StepSpan, add_at, add_weighted};
-use crate::report::infeasibility::Driver;
-use crate::{State, vectors::point};
+use isosheet_materials::vectors::point;
 use isosheet_mesh::VertexId;
+use isosheet_model::Driver;
 use nalgebra::Vector3;
 
 /// A contact of the sheet with a body: `g(x) = offset + n . sum_i w_i x_i`.

@@ -2,13 +2,14 @@
 
 use super::{Engine, check_energy};
 use crate::contact::{Contact, ContactTerm};
-use crate::model::immobile::immobile_vertices;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::{SheetModel, SimulationError};
+use isosheet_model::immobile_vertices;
 
 impl Engine {
-    /// From the present state on with a model of the same sheet that is held otherwise. Pinned vertices take the
-    /// velocities of their motions over `span` seconds, and a method of two steps begins anew, as at a start.
+    /// From the present state on with a model of the same sheet that is held otherwise. Pinned vertices take
+    /// the velocities of their motions over `span` seconds, and a method of two steps begins anew, as at a
+    /// start.
     pub(crate) fn held_by(
         &self,
         mut model: SheetModel,
@@ -17,7 +18,8 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let mut state = self.motion.state.clone();
         let mut memories = model.memories();
-        memories.take_over(&self.motion.memories)?;
+        let taken = memories.take_over(&self.motion.memories);
+        taken.map_err(CheckpointError::from)?;
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, span, &mut state.v);
         let fixed = immobile_vertices(&model, &state.x);

@@ -4,10 +4,10 @@
 use super::*;
 use crate::contact::contact_tests::{Floor, model, sheet};
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::not_converged;
+use crate::report::totals::not_converged;
 use crate::step::integrator::{MethodTraits, StepAccount};
 use isosheet_mesh::{MassKind, Sheet, generate};
+use isosheet_model::Reason;
 use serde::Serialize;
 use std::sync::{Arc, Mutex};
 

@@ -2,10 +2,10 @@
 
 use super::{ConstrainedSolver, ConstrainedSystem, MultiplierGoal, SupportRows};
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, point};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Vector3;
 
@@ -157,7 +157,7 @@ fn nearly_dependent_equations_take_as_many_iterations_as_there_are_of_them() {
 
 #[test]
 fn supports_are_equations_like_rods() {
-    use crate::constraint::{Plane, Side, VertexConstraint};
+    use isosheet_model::constraint::{Plane, Side, VertexConstraint};
     let (model, x) = model(0.05);
     let corner = VertexId(24);
     let at = [x[72], x[73], x[74]];

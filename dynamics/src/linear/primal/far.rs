@@ -1,9 +1,9 @@
 //! Couplings of vertices without a common edge, and what takes their place in a matrix without them.
 
-use crate::model::PINNED;
 use crate::{CouplingKind, SheetModel};
 use isosheet_linalg::parallel::pieces;
 use isosheet_mesh::VertexId;
+use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Vector3};
 
 /// Part of the square of a block's norm by which the block may differ from one of rank one: round-off.
@@ -179,7 +179,8 @@ impl FarCouplings {
         Ok(())
     }
 
-    /// The place of a block; none for a pinned vertex. Potentials give blocks in the order in which they name pairs, as a rule.
+    /// The place of a block; none for a pinned vertex. Potentials give blocks in the order in which they name
+    /// pairs, as a rule.
     fn find(
         &mut self,
         model: &SheetModel,
@@ -234,7 +235,8 @@ impl FarCouplings {
         }
     }
 
-    /// Adds the product of `x` with the multiples of the identity, less their substitutes, to the rows from `first` on.
+    /// Adds the product of `x` with the multiples of the identity, less their substitutes, to the rows from
+    /// `first` on.
     fn add_multiples(&self, x: &[[f64; 3]], first: usize, y: &mut [[f64; 3]]) {
         let own = x[first..].iter().zip(&self.substitute_multiples[first..]);
         for (y, (x, value)) in y.iter_mut().zip(own) {

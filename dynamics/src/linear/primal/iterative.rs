@@ -1,7 +1,7 @@
 //! Conjugate gradients on a matrix that differs from a factorised one by its far couplings.
 
 use super::far::FarCouplings;
-use crate::vectors::dot;
+use isosheet_materials::vectors::dot;
 
 /// Working memory, in free coordinates.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub(super) struct ConjugateGradients {
 
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ending {
+pub(super) enum IterationEnd {
     /// With a solution of the accuracy wanted.
     Solved,
     /// The number of iterations did not suffice.
@@ -50,8 +50,8 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves `(M + E) x = b` with `M`, not less than `M + E`, which `solve` applies inversely, and the difference
-    /// `E` that the far couplings make.
+    /// Solves `(M + E) x = b` with `M`, not less than `M + E`, which `solve` applies inversely, and the
+    /// difference `E` that the far couplings make.
     ///
     /// The iteration starts at `x = M^-1 b`, which is exact where `E` does not matter, as along stiff rods:
     /// the residual is `-E x`, and what is measured from there on is the error in soft directions. Since
@@ -66,7 +66,7 @@ impl ConjugateGradients {
         far: &FarCouplings,
         b: &[f64],
         goal: Goal,
-    ) -> (Ending, usize) {
+    ) -> (IterationEnd, usize) {
         self.x.copy_from_slice(b);
         solve(&mut self.x);
         self.residual.fill(0.0);
@@ -81,7 +81,7 @@ impl ConjugateGradients {
             solve(&mut self.preconditioned);
             let square = dot(&self.residual, &self.preconditioned);
             if square == 0.0 {
-                return (Ending::Solved, iteration);
+                return (IterationEnd::Solved, iteration);
             }
             let beta = square / previous;
             previous = square;
@@ -93,7 +93,7 @@ impl ConjugateGradients {
             far.add_difference(&self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             if !(curvature > 0.0 && square > 0.0) {
-                return (Ending::NotDefinite, iteration + 1);
+                return (IterationEnd::NotDefinite, iteration + 1);
             }
             let length = square / curvature;
             for i in 0..b.len() {
@@ -103,9 +103,9 @@ impl ConjugateGradients {
             let gain = length * square;
             gained += gain;
             if gain <= goal.relative * goal.relative * gained {
-                return (Ending::Solved, iteration + 1);
+                return (IterationEnd::Solved, iteration + 1);
             }
         }
-        (Ending::TooSlow, goal.max_iterations)
+        (IterationEnd::TooSlow, goal.max_iterations)
     }
 }

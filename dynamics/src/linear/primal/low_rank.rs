@@ -1,7 +1,7 @@
 //! Terms of rank one that a factorised matrix is without.
 
-use crate::vectors::dot;
 use isosheet_linalg::LinalgError;
+use isosheet_materials::vectors::dot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The terms `sum_k c_k v_k v_k^T` with `c_k > 0` of a symmetric matrix, dense but of a low rank: those of
@@ -15,13 +15,13 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// a solve with the factorised `K` for each term.
 #[derive(Debug, Default)]
 pub(super) struct LowRank {
-    terms: Vec<Term>,
+    terms: Vec<RankOne>,
     /// `S`.
     small: Option<Cholesky<f64, Dyn>>,
 }
 
 #[derive(Debug)]
-struct Term {
+struct RankOne {
     /// `c_k`.
     factor: f64,
     /// `v_k`, in free coordinates.
@@ -40,7 +40,7 @@ impl LowRank {
     /// Adds a term; one with a factor of zero is none.
     pub(super) fn add(&mut self, factor: f64, vector: Vec<f64>) {
         if factor != 0.0 {
-            self.terms.push(Term {
+            self.terms.push(RankOne {
                 factor,
                 vector,
                 solution: Vec::new(),

@@ -2,8 +2,8 @@
 
 use super::PrimalMatrix;
 use crate::SheetModel;
-use crate::hessian::HessianPart;
-use crate::potential::Memories;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::potential::Memories;
 
 /// Adds `scale` times the second derivatives of the potentials, where nothing has happened yet that they
 /// remember.

@@ -1,10 +1,10 @@
 use super::testing::{add_potentials, add_potentials_with};
 use super::*;
-use crate::hessian::HessianPart;
 use crate::linear::free::penalties;
-use crate::vectors::dot;
 use crate::{CreaseSprings, ElasticSheet, PlateBending};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -251,7 +251,7 @@ fn terms_of_rank_one_are_solved_for_exactly() {
     let all = |k: f64| {
         let wave = wave(&model, k);
         let vertices = model.topology().vertex_ids();
-        let all = vertices.map(|v| (v, crate::vectors::point(&wave, v)));
+        let all = vertices.map(|v| (v, isosheet_materials::vectors::point(&wave, v)));
         all.collect::<Vec<_>>()
     };
     let b = wave(&model, 1.3);

@@ -50,6 +50,7 @@ impl Advice for DrawingError {
 
 /// A drawing that has become a sheet.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DrawnSheet {
     /// The mesh, metres, in the plane z = 0, with its creases. Cuts have vertices of their own on both sides.
     pub mesh: MeshFile,

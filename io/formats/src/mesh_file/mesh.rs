@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// An edge of a FOLD file, or a diagonal of one of its polygons.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FileCrease {
     /// The vertices at its ends, from 0.
     pub ends: [u32; 2],
@@ -27,6 +28,7 @@ pub struct FileCrease {
 
 /// What reading changed besides cutting polygons into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ReadingChanges {
     /// Vertices that were welded to another one.
     pub welded_vertices: usize,

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// What a repair changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Repair {
     /// Vertices that were merged with another one at exactly the same place.
     pub merged_vertices: usize,

@@ -1,0 +1,150 @@
+//! How much shorter the chords of a bent sheet are than its arcs.
+
+use super::bend::{Bend, NUMBERS};
+use super::curved::CurvedFace;
+use super::face::Face;
+use super::surroundings::{Surroundings, largest_of_mean};
+use crate::evaluation::Room;
+use crate::plate_bending::PlateBending;
+use crate::plate_bending::SecondDerivatives;
+use crate::potential::At;
+use isosheet_mesh::{Part, Sheet};
+use nalgebra::Vector3;
+use std::ops::Range;
+
+/// The bends of the faces of a sheet, or of one of the parts of a union.
+#[derive(Debug, Clone)]
+pub(super) struct Arcs {
+    curvatures: SecondDerivatives,
+    /// The bends of faces that are curved without stress; nothing where all are flat.
+    at_rest: Vec<Bend>,
+    around: Surroundings,
+    /// While bends are remembered, the stresses of the faces, and those that their material alone would have.
+    stresses: Room<Vec<[Vector3<f64>; 2]>>,
+    /// The numbers of its coordinates in the union, and of its faces among those that are elastic.
+    coordinates: Range<usize>,
+    faces: Range<usize>,
+}
+
+impl Arcs {
+    /// Of a sheet that bends as a plate with rigidity.
+    pub(super) fn new(sheet: &Sheet, plate: &PlateBending, faces: &[Face]) -> Self {
+        let topology = sheet.topology();
+        let curvatures = plate.second_derivatives(sheet);
+        let at_rest = At::new(0.0, sheet.positions());
+        Self {
+            at_rest: match plate.is_curved() {
+                true => bends(&curvatures, faces, at_rest).collect(),
+                false => Vec::new(),
+            },
+            curvatures,
+            around: Surroundings::new(topology, faces),
+            stresses: Room::default(),
+            coordinates: 0..3 * topology.vertex_count(),
+            faces: 0..topology.face_count(),
+        }
+    }
+
+    /// The bends of the faces of this sheet as a part of a union of several sheets, among whose elastic faces
+    /// its first one has the number `first`.
+    pub(super) fn in_union(self, part: &Part, first: usize) -> Self {
+        Self {
+            coordinates: part.coordinates(),
+            faces: first..first + self.faces.len(),
+            ..self
+        }
+    }
+
+    /// Its faces that are curved without stress.
+    pub(super) fn curved<'a>(&'a self, faces: &'a [Face]) -> impl Iterator<Item = CurvedFace> + 'a {
+        let own = faces[self.faces.clone()].iter().zip(&self.at_rest);
+        let bent = own.filter(|(_, bend)| bend.own > 0.0);
+        bent.map(|(face, bend)| {
+            let size = face.mean_squared_length().sqrt();
+            CurvedFace {
+                face: face.id,
+                size,
+                radius: size / bend.own.sqrt(),
+                thickness: face.thickness(),
+            }
+        })
+    }
+
+    /// Writes the bends where a simulation starts to the numbers that are remembered of its faces, with the
+    /// slack of the bend of each face.
+    pub(super) fn start(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
+        let rows = self.rows(memory);
+        for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
+            let squared = bend.own;
+            *row = Bend { squared, ..bend }.numbers();
+        }
+    }
+
+    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces.
+    /// Each has the slack of the bend of that face around it which bends most, as far as the tension around
+    /// it leaves it.
+    pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
+        let own = &faces[self.faces.clone()];
+        let rows = self.rows(memory);
+        self.stresses.with(|stresses| {
+            let before = own.iter().zip(rows.iter());
+            let stress = |(face, row): (&Face, &_)| {
+                [Bend::remembered(row), Bend::FLAT].map(|bend| face.stress(here, &bend))
+            };
+            stresses.clear();
+            stresses.extend(before.map(stress));
+            for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
+                let Bend {
+                    squared, credit, ..
+                } = Bend::remembered(row);
+                *row = Bend {
+                    squared,
+                    credit,
+                    ..bend
+                }
+                .numbers();
+            }
+            for (k, around) in self.around.iter().enumerate() {
+                let bends = around.iter().map(|f| Bend::remembered(&rows[f.face]));
+                let most = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
+                let mean =
+                    |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
+                let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
+                let bend = Bend::remembered(&rows[k]);
+                rows[k] = own[k].with_slack(here, bend, wanted).numbers();
+            }
+        });
+    }
+
+    fn rows<'a>(&self, memory: &'a mut [f64]) -> &'a mut [[f64; NUMBERS]] {
+        &mut memory.as_chunks_mut().0[self.faces.clone()]
+    }
+
+    /// The bends of its faces beyond those without stress, without slack.
+    fn bends<'a>(&'a self, faces: &'a [Face], here: At<'a>) -> impl Iterator<Item = Bend> + 'a {
+        let own = &faces[self.faces.clone()];
+        let at = At::new(here.t, &here.x[self.coordinates.clone()]);
+        let bends = bends(&self.curvatures, own, at).enumerate();
+        bends.map(|(k, mut bend)| {
+            if let Some(rest) = self.at_rest.get(k) {
+                bend.chords -= rest.chords;
+                bend.own = (bend.own - rest.own).abs();
+            }
+            bend
+        })
+    }
+}
+
+/// The bends of faces, each with its own square.
+fn bends<'a>(
+    curvatures: &'a SecondDerivatives,
+    faces: &'a [Face],
+    at: At<'a>,
+) -> impl Iterator<Item = Bend> + 'a {
+    faces.iter().zip(curvatures.at(at)).map(|(face, h)| Bend {
+        chords: face.chords(&h),
+        own: h.norm_squared() * face.mean_squared_length(),
+        squared: 0.0,
+        credit: 0.0,
+    })
+}

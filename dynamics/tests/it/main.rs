@@ -1,0 +1,16 @@
+//! Whole simulations of sheets: what one file of the solver cannot see alone.
+
+mod air;
+mod creases;
+mod damping;
+mod elastic_sheet;
+mod glue;
+mod hands;
+mod immobile;
+mod loads;
+mod of_material;
+mod pins;
+mod plate_yield;
+mod rigid_bodies;
+mod swelling;
+mod taut_sheets;
