@@ -7,7 +7,6 @@ use crate::vec3::{Vec3, cross, dot, norm, sub};
 /// A developable surface has one principal curvature that is zero, and straight lines in it along that
 /// direction, its rulings. Of a mesh it is the direction of the principal curvature that is smaller in size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Ruling {
     /// Unit vector along the ruling, in the plane of the face. Of both directions it is the one whose
     /// component of largest size is positive (of components of equal size the first one).
