@@ -1,8 +1,8 @@
 //! The air around the sheet.
 
 use super::AttachedFlow;
-use super::Sheet;
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::unit::Unit;
@@ -20,8 +20,9 @@ use serde::{Deserialize, Serialize};
 /// [air]
 /// wind = [{ sine = { mean = 4, amplitude = 2, frequency = 0.7 } }, 0, 0]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Air {
     /// Density, kg/m3: that of air at 20 degrees Celsius by default.
     pub density: f64,
@@ -32,6 +33,7 @@ pub struct Air {
     /// boundary layer.
     pub tangential: f64,
     /// Components of the velocity of the air, m/s. A gust is a component that changes with time.
+    #[unit(MetrePerSecond)]
     pub wind: [Profile; 3],
     /// The sheet along which the air flows. Without it the flow separates everywhere.
     pub attached: Option<AttachedFlow>,
@@ -57,17 +59,11 @@ impl Default for Air {
 }
 
 impl Air {
-    pub(crate) fn check(&self, sheets: &[Sheet], key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let density = Unit::KilogramPerCubicMetre;
         checks.not_negative(key.name("density"), self.density, density);
         checks.not_negative(key.name("normal"), self.normal, Unit::One);
         checks.not_negative(key.name("tangential"), self.tangential, Unit::One);
-        if let Some(flow) = &self.attached {
-            flow.check(sheets, &key.name("attached"), checks);
-        }
-        for (k, component) in self.wind.iter().enumerate() {
-            component.check(key.name("wind").entry(k), Unit::MetrePerSecond, checks);
-        }
     }
 
     /// The air as the engine has it.

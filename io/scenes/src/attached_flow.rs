@@ -1,10 +1,9 @@
 //! Sheets along whose both sides the air flows.
 
-use super::Sheet;
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::selection::Selection;
-use super::sheets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,8 +21,9 @@ use serde::{Deserialize, Serialize};
 /// [air.attached]
 /// trailing = { half_space = { point = [0.3, 0, 0], normal = [1, 0, 0] } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct AttachedFlow {
     /// The name of the sheet, if there are several and not all are meant.
     #[serde(default)]
@@ -41,10 +41,7 @@ fn rows() -> usize {
 }
 
 impl AttachedFlow {
-    pub(super) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
-        let name = self.sheet.as_deref();
-        sheets::check_reference(all, name, &key.name("sheet"), checks);
-        self.trailing.check(&key.name("trailing"), checks);
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("rows"), self.rows, 2);
     }
 }

@@ -1,14 +1,15 @@
 //! Rigid bodies that respond.
 
+use super::Sheet;
 use super::guides::{BodyForce, BodyTorque, Guide};
 use super::key::Key;
 use super::obstacles::Shape;
+use super::part::{self, Part};
 use super::pose::Pose;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::start::Spin;
 use super::unit::Unit;
-use super::{Sheet, sheets};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +24,9 @@ use serde::{Deserialize, Serialize};
 /// pose = { position = [0.05, 0.05, 0.1] }
 /// velocity = [0, 0, -1]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Body {
     /// A name, by which measures and pairs of friction find it; if left out, `body_0` and so on.
     #[serde(default)]
@@ -130,20 +132,7 @@ impl Body {
             Unit::KilogramPerCubicMetre,
         );
         checks.positive(key.name("mass"), self.mass, Unit::Kilogram);
-        self.pose.check(&key.name("pose"), checks);
         checks.finite(key.name("velocity"), &self.velocity, Unit::MetrePerSecond);
-        if let Some(spin) = &self.spin {
-            spin.check(&key.name("spin"), checks);
-        }
-        if let Some(guide) = &self.guide {
-            guide.check(&key.name("guide"), checks);
-        }
-        for (key, force) in key.name("force").entries(&self.force) {
-            force.check(&key, checks);
-        }
-        for (key, torque) in key.name("torque").entries(&self.torque) {
-            torque.check(&key, checks);
-        }
     }
 
     /// Sides of its circles.
@@ -155,26 +144,10 @@ impl Body {
         })
     }
 
-    /// Its functions of time.
-    pub(super) fn functions_mut(&mut self, key: &Key) -> Vec<(Key, &mut Profile)> {
-        let guide = self.guide.as_mut().and_then(Guide::rest_mut);
-        let mut all: Vec<_> = guide
-            .map(|(name, rest)| (key.name("guide").name(name), rest))
-            .into_iter()
-            .collect();
-        for (k, force) in self.force.iter_mut().enumerate() {
-            all.push((key.name("force").entry(k).name("size"), &mut force.size));
-        }
-        for (k, torque) in self.torque.iter_mut().enumerate() {
-            all.push((key.name("torque").entry(k).name("size"), &mut torque.size));
-        }
-        all
-    }
-
     /// What of it does not change during a simulation: all but its functions of time.
     pub(super) fn lasting(&self) -> Self {
         let mut lasting = self.clone();
-        for (_, function) in lasting.functions_mut(&Key::root()) {
+        for (_, function) in part::all_mut::<Profile>(&mut lasting, Key::root()) {
             *function = Profile::default();
         }
         lasting
@@ -202,7 +175,6 @@ pub(super) fn number_of(bodies: &[Body], name: &str) -> Option<usize> {
 /// Checks the bodies beside the sheets of a scene.
 pub(super) fn check(bodies: &[Body], all: &[Sheet], checks: &mut Checks) {
     for (k, (key, body)) in Key::root().name("body").entries(bodies).enumerate() {
-        body.check(&key, checks);
         let name = body.name(k);
         let is_other = number_of(bodies, &name) != Some(k);
         if is_other || all.iter().any(|sheet| sheet.name.as_ref() == Some(&name)) {
@@ -213,29 +185,6 @@ pub(super) fn check(bodies: &[Body], all: &[Sheet], checks: &mut Checks) {
         if name.is_empty() {
             checks.report(key.name("name"), "the name is empty", "leave it out");
         }
-    }
-}
-
-/// Reports a name that neither a sheet nor a body has.
-pub(super) fn check_reference(
-    all: &[Sheet],
-    bodies: &[Body],
-    name: Option<&str>,
-    key: &Key,
-    checks: &mut Checks,
-) {
-    let Some(name) = name else {
-        return;
-    };
-    let of_sheets = all.iter().filter_map(|sheet| sheet.name.clone());
-    let known: Vec<String> = of_sheets.chain(names(bodies)).collect();
-    if !known.iter().any(|known| known == name) {
-        let meant = match bodies.is_empty() {
-            true => "sheet",
-            false => "sheet or body",
-        };
-        let problem = sheets::unknown_name(meant, known.into_iter(), name, key);
-        checks.problems.push(problem);
     }
 }
 

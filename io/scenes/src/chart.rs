@@ -1,6 +1,7 @@
 //! Motion in a chart: Hamilton's equations in system coordinates.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_charts::{
@@ -25,7 +26,7 @@ use serde::{Deserialize, Serialize};
 /// integrator = "chart"
 /// chart = { scheme = "runge_kutta4", substep = { fixed = 0.001 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 pub struct Chart {
     /// The coordinates.
@@ -45,7 +46,7 @@ pub struct Chart {
 }
 
 /// The coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Coordinates {
     /// Some of the coordinates of vertices, chosen so that the others depend well on them.
@@ -58,7 +59,7 @@ pub enum Coordinates {
 }
 
 /// The time integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartScheme {
     /// The paper's: first order, gains energy.
@@ -69,7 +70,7 @@ pub enum ChartScheme {
 }
 
 /// The equations of motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartEquations {
     /// Hamilton's equations.
@@ -82,7 +83,7 @@ pub enum ChartEquations {
 }
 
 /// How positions follow from a step of the coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartPositions {
     /// Through the chart: exact lengths.
@@ -95,7 +96,7 @@ pub enum ChartPositions {
 }
 
 /// How velocities follow from momenta.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartSolver {
     /// By a sparse factorisation, for any number of coordinates.
@@ -114,7 +115,7 @@ pub enum ChartSolver {
 /// integrator = "chart"
 /// chart = { substep = { adaptive = { tolerance = 1e-4, min = 1e-6, max = 0.001 } } }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Substep {
     /// The same for all, seconds.
@@ -138,7 +139,7 @@ impl Default for Substep {
 }
 
 /// What happens where the chart comes close to a singularity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum NearSingularity {
     /// The state there becomes the reference of a new chart.

@@ -3,6 +3,7 @@
 use super::friction::Friction;
 use super::key::Key;
 use super::obstacles::Shape;
+use super::part::Part;
 use super::problem::Checks;
 use super::switch::When;
 use super::unit::Unit;
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// friction = 0.3
 /// activation = 0.001
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
     /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
@@ -57,7 +58,7 @@ pub struct Contact {
 /// sheets = ["cover", "page"]
 /// friction = 0.6
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct SheetPair {
     /// The names of the two: sheets, bodies, and at most one obstacle.
@@ -81,7 +82,6 @@ impl Contact {
         key: &Key,
         checks: &mut Checks,
     ) {
-        self.friction.check(&key.name("friction"), checks);
         for (k, (key, pair)) in key.name("pair").entries(&self.pair).enumerate() {
             let is_same = |other: &SheetPair| {
                 let [first, second] = &pair.sheets;
@@ -92,7 +92,6 @@ impl Contact {
                 let remedy = "describe how two of them meet in one entry";
                 checks.report(key.name("sheets"), message, remedy);
             }
-            pair.friction.check(&key.name("friction"), checks);
             let is_body = |name: &String| bodies::number_of(bodies, name).is_some();
             let is_obstacle = |name: &String| obstacle_names::number_of(obstacles, name).is_some();
             let switch = match (&pair.from, &pair.until) {

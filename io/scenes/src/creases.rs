@@ -2,6 +2,7 @@
 
 use super::drawing;
 use super::key::Key;
+use super::part::Part;
 use super::pattern::EdgeRoles;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
@@ -27,8 +28,9 @@ use std::collections::BTreeSet;
 /// stiffness = 0.01
 /// angle = { ramp = { to = 90, end = 1 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Crease {
     /// A name, by which measures find it, and which messages say.
     #[serde(default)]
@@ -45,6 +47,7 @@ pub struct Crease {
     /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which faces
     /// are counter-clockwise, negative for a mountain.
     #[serde(default)]
+    #[unit(Degree)]
     pub angle: Profile,
     /// When it yields. If left out, never: it comes back to its angle.
     #[serde(default, rename = "yield")]
@@ -58,7 +61,7 @@ pub struct Crease {
 /// at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
 /// stiffness = 0.01
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CreaseEdges {
     /// Edges of `sheet.mesh` by the numbers of their two vertices.
@@ -121,7 +124,7 @@ impl FoldSprings {
 }
 
 /// Edges of a crease pattern.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum PatternEdges {
     /// All mountains and valleys; a positive angle folds each to its side.
@@ -163,14 +166,12 @@ pub(super) fn in_radians(creases: &[Crease]) -> Option<Warning> {
 impl Crease {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("stiffness"), self.stiffness, Unit::Newton);
-        self.angle.check(key.name("angle"), Unit::Degree, checks);
         if let Profile::Constant(angle) = self.angle
             && angle.is_finite()
         {
             checks.within(key.name("angle"), angle, [-180.0, 180.0]);
         }
-        if let Some(yields) = &self.yields {
-            yields.check(&key.name("yield"), checks);
+        if self.yields.is_some() {
             let (_, angles) = self.angle.numbers();
             if angles.iter().any(|angle| *angle != angles[0]) {
                 let message = format!(

@@ -3,6 +3,7 @@
 use super::direction::Direction;
 use super::key::Key;
 use super::mesh_file::MeshFile;
+use super::part::Part;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::unit::Unit;
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// material = "office paper"
 /// curl = { along = [1, 0, 0], radius = 0.05 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Curl {
     /// The direction along which the sheet is curved, in the frame of the mesh, of any length. If left out, that of the
@@ -48,6 +49,7 @@ pub struct Curl {
     pub shape: Option<MeshFile>,
     /// A factor of time by which the curvatures are multiplied.
     #[serde(default = "one")]
+    #[unit(Factor)]
     pub profile: Profile,
 }
 
@@ -109,8 +111,7 @@ impl Curl {
             self.twist,
         ];
         let has_numbers = numbers.iter().any(Option::is_some);
-        if let Some(shape) = &self.shape {
-            shape.check(&key.name("shape"), checks);
+        if self.shape.is_some() {
             if has_numbers || self.along.is_some() {
                 let message = "the curvature is that of a shape, and given by numbers besides";
                 checks.report(key.clone(), message, "give one of them");
@@ -123,7 +124,5 @@ impl Curl {
             let message = "the curvature has no direction";
             checks.report(key.clone(), message, "give `along`, for instance [1, 0, 0]");
         }
-        self.profile
-            .check(key.name("profile"), Unit::Factor, checks);
     }
 }

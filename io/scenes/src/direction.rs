@@ -1,6 +1,7 @@
 //! The direction of the material of a sheet.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use isosheet_dynamics::MaterialDirection;
 use isosheet_mesh::Sheet;
@@ -20,7 +21,7 @@ use std::sync::Arc;
 /// material = "office paper"
 /// direction = { uv = "v" }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
 pub enum Direction {
     /// The same everywhere, in the frame of the mesh, of any length.
@@ -41,7 +42,7 @@ pub enum Direction {
 /// material = "cotton"
 /// direction = { uv = "u" }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct TextureDirection {
     /// The texture coordinate that grows along the direction, and steepest: of an OBJ file `vt`, of a glTF file
@@ -50,7 +51,7 @@ pub struct TextureDirection {
 }
 
 /// One of the two texture coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum TextureAxis {
     /// The first one.

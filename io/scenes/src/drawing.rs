@@ -3,6 +3,7 @@
 use super::foreign;
 use super::key::Key;
 use super::mesh_file::Files;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use isosheet_drawings::{
@@ -23,8 +24,9 @@ use std::path::PathBuf;
 /// [sheet]
 /// mesh = { drawing = { path = "box.svg", spacing = 0.005, cut = ["black"], valley = ["layer:creases"] } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct DrawingFile {
     /// Path of the drawing (.svg, .dxf), relative to the scene file.
     pub path: PathBuf,

@@ -2,6 +2,7 @@
 
 use super::drawing::check_lines;
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use isosheet_drawings::{DrawnLines, Selector, refuse_idle};
 use schemars::JsonSchema;
@@ -23,7 +24,7 @@ use std::str::FromStr;
 /// time = 3
 /// order = ["valleys", { edges = [3, 7] }, { drawn = ["layer:Wings"] }, "mountains"]
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum FoldGroup {
     /// Creases with a negative angle.

@@ -5,6 +5,7 @@ use super::fold_group::{FoldGroup, PatternCrease};
 use super::foreign;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
 use super::refined::Refined;
@@ -41,7 +42,7 @@ use std::sync::Arc;
 /// stiffness = 0.05
 /// time = 2
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Folding {
     /// The name of the sheet, if there are several.
@@ -60,6 +61,7 @@ pub struct Folding {
     /// Which part of their angles the springs are at, from 0 to 1, as a function of time. If left out, they
     /// go smoothly from the angles of the start to the whole ones within `time`. Not beside an `order`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[unit(Factor)]
     pub course: Option<Profile>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
     /// each other, which cross without self-contact: take less than 1.
@@ -233,12 +235,9 @@ impl Folding {
             Unit::Newton,
         );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
-        if let Some(course) = &self.course {
-            course.check(key.name("course"), Unit::Factor, checks);
-            if !self.order.is_empty() {
-                let message = "groups of creases fold one after the other in a course of their own";
-                checks.report(key.name("course"), message, "leave out `course` or `order`");
-            }
+        if self.course.is_some() && !self.order.is_empty() {
+            let message = "groups of creases fold one after the other in a course of their own";
+            checks.report(key.name("course"), message, "leave out `course` or `order`");
         }
         for (k, group) in self.order.iter().enumerate() {
             group.check(&key.name("order").entry(k), checks);

@@ -1,11 +1,10 @@
 //! Loads that follow the sheet: pressure, enclosed gas, moments.
 
-use super::Sheet;
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
-use super::sheets;
 use super::unit::Unit;
 use isosheet_dynamics as engine;
 use schemars::JsonSchema;
@@ -22,8 +21,9 @@ use serde::{Deserialize, Serialize};
 /// [[forces.pressure]]
 /// size = { smooth_step = { to = 20, end = 0.5 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Pressure {
     /// A name, by which measures find it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -35,6 +35,7 @@ pub struct Pressure {
     #[serde(default = "everywhere")]
     pub at: Selection,
     /// Size, pascals.
+    #[unit(Pascal)]
     pub size: Profile,
 }
 
@@ -54,8 +55,9 @@ fn everywhere() -> Selection {
 /// [[forces.gas]]
 /// added = { smooth_step = { to = 5e-4, end = 0.5 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Gas {
     /// A name, by which measures find it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,6 +77,7 @@ pub struct Gas {
     /// Gas that is let in, by the volume that it takes at the pressure at the start, cubic metres; what is
     /// let out has a negative sign. It is added to `V1`.
     #[serde(default)]
+    #[unit(CubicMetre)]
     pub added: Profile,
 }
 
@@ -94,8 +97,9 @@ fn isothermal() -> f64 {
 /// axis = [0, 1, 0]
 /// size = { smooth_step = { to = 1e-3, end = 1 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Moment {
     /// The name of the sheet, if there are several.
     #[serde(default)]
@@ -106,25 +110,22 @@ pub struct Moment {
     /// the edges.
     pub axis: [f64; 3],
     /// Size of the whole moment, newton metres.
+    #[unit(NewtonMetre)]
     pub size: Profile,
 }
 
 impl Pressure {
-    pub(super) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
-        check_names(&self.sheets, all, key, checks);
-        self.at.check(&key.name("at"), checks);
-        self.size.check(key.name("size"), Unit::Pascal, checks);
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        check_sheets(&self.sheets, key, checks);
     }
 }
 
 impl Gas {
-    pub(super) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
-        check_names(&self.sheets, all, key, checks);
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        check_sheets(&self.sheets, key, checks);
         checks.positive(key.name("ambient"), self.ambient, Unit::Pascal);
         checks.positive(key.name("pressure"), self.pressure, Unit::Pascal);
         checks.positive(key.name("exponent"), self.exponent, Unit::Factor);
-        self.added
-            .check(key.name("added"), Unit::CubicMetre, checks);
     }
 
     /// What it is called, by its number.
@@ -145,16 +146,13 @@ impl Gas {
 }
 
 impl Moment {
-    pub(super) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
-        let name = self.sheet.as_deref();
-        sheets::check_reference(all, name, &key.name("sheet"), checks);
-        self.at.check(&key.name("at"), checks);
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.direction(key.name("axis"), &self.axis);
-        self.size.check(key.name("size"), Unit::NewtonMetre, checks);
     }
 }
 
-fn check_names(names: &Option<Vec<String>>, all: &[Sheet], key: &Key, checks: &mut Checks) {
+/// Checks that names of sheets are named, each once.
+fn check_sheets(names: &Option<Vec<String>>, key: &Key, checks: &mut Checks) {
     let key = key.name("sheets");
     let Some(names) = names else { return };
     if names.is_empty() {
@@ -167,7 +165,6 @@ fn check_names(names: &Option<Vec<String>>, all: &[Sheet], key: &Key, checks: &m
         return;
     }
     for (i, name) in names.iter().enumerate() {
-        sheets::check_reference(all, Some(name), &key.entry(i), checks);
         if names[..i].contains(name) {
             let message = format!("the sheet `{name}` is named twice");
             checks.report(key.entry(i), message, "name each sheet once");

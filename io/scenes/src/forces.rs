@@ -2,11 +2,11 @@
 
 use super::follower_loads::{Gas, Moment, Pressure};
 use super::key::Key;
+use super::part::Part;
 use super::plain_name::check_name;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
-use super::sheet::Sheet;
 use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,8 +27,9 @@ const EARTH: [f64; 3] = [0.0, 0.0, -9.81];
 /// direction = [1, 0, 0]
 /// size = 0.01
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Forces {
     /// Acceleration of gravity, m/s2: `[0, 0, -9.81]` on earth. Without it there is no gravity.
     #[schemars(example = EARTH)]
@@ -53,8 +54,9 @@ pub struct Forces {
 /// direction = [0, 0, 1]
 /// size = { ramp = { to = 0.05, end = 0.5 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Load {
     /// The name of the sheet, if there are several and not the vertices of all are meant.
     #[serde(default)]
@@ -67,11 +69,12 @@ pub struct Load {
     #[serde(default)]
     pub frame: Frame,
     /// Size of the whole load, newtons.
+    #[unit(Newton)]
     pub size: Profile,
 }
 
 /// What the direction of a load turns with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Frame {
     /// Nothing: it is fixed in space.
@@ -88,18 +91,20 @@ pub enum Frame {
 /// direction = [1, 0, 0]
 /// size = { sine = { amplitude = 3, frequency = 2 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Acceleration {
     /// Direction in space, of any length.
     pub direction: [f64; 3],
     /// Size, m/s2.
+    #[unit(MetrePerSquareSecond)]
     pub size: Profile,
 }
 
 impl Forces {
     /// Refuses names of gases and pressures that stand twice or that tables cannot have.
-    pub(super) fn check_names(&self, key: &Key, checks: &mut Checks) {
+    fn check_names(&self, key: &Key, checks: &mut Checks) {
         let [gas_key, pressure_key] = ["gas", "pressure"].map(|name| key.name(name));
         let gases = gas_key.entries(&self.gas);
         let gases = gases.map(|(key, gas)| (key, gas.name.as_ref(), "a gas"));
@@ -117,29 +122,22 @@ impl Forces {
         }
     }
 
-    pub(crate) fn check(&self, sheets: &[Sheet], key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         if let Some(gravity) = &self.gravity {
             checks.finite(key.name("gravity"), gravity, Unit::MetrePerSquareSecond);
         }
-        for (key, load) in key.name("load").entries(&self.load) {
-            load.at.check(&key.name("at"), checks);
-            checks.direction(key.name("direction"), &load.direction);
-            load.size.check(key.name("size"), Unit::Newton, checks);
-        }
-        for (key, pressure) in key.name("pressure").entries(&self.pressure) {
-            pressure.check(sheets, &key, checks);
-        }
-        for (key, gas) in key.name("gas").entries(&self.gas) {
-            gas.check(sheets, &key, checks);
-        }
-        for (key, moment) in key.name("moment").entries(&self.moment) {
-            moment.check(sheets, &key, checks);
-        }
-        for (key, field) in key.name("acceleration").entries(&self.acceleration) {
-            checks.direction(key.name("direction"), &field.direction);
-            field
-                .size
-                .check(key.name("size"), Unit::MetrePerSquareSecond, checks);
-        }
+        self.check_names(key, checks);
+    }
+}
+
+impl Load {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.direction(key.name("direction"), &self.direction);
+    }
+}
+
+impl Acceleration {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.direction(key.name("direction"), &self.direction);
     }
 }

@@ -1,6 +1,7 @@
 //! Coefficients of friction.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_dynamics::contact::Coefficients;
@@ -17,8 +18,9 @@ use std::fmt;
 /// shape = "half_space"
 /// friction = { static = 0.5, kinetic = 0.3 }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
+#[checked]
 pub enum Friction {
     /// The coefficient at rest and in motion.
     Same(f64),
@@ -33,7 +35,7 @@ pub enum Friction {
 /// self_contact = true
 /// friction = { static = 0.4, kinetic = 0.25 }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionCoefficients {
     /// The static coefficient, at least the kinetic one: up to it what touches rests.
@@ -67,8 +69,8 @@ impl From<f64> for Friction {
 }
 
 impl Friction {
-    pub(crate) fn check(self, key: &Key, checks: &mut Checks) {
-        let Self::Each(FrictionCoefficients { at_rest, kinetic }) = self else {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        let Self::Each(FrictionCoefficients { at_rest, kinetic }) = *self else {
             checks.not_negative(key.clone(), self.coefficients().rest, Unit::One);
             return;
         };

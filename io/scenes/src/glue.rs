@@ -1,6 +1,7 @@
 //! Seams: vertices of one sheet or of two that are glued to each other.
 
 use super::key::Key;
+use super::part::Part;
 use super::placed::PlacedSheets;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
@@ -30,7 +31,7 @@ use serde::{Deserialize, Serialize};
 /// second = { line = { from = [0.3, 0, 0], to = [0.3, 0.02, 0] } }
 /// closing = { smooth_step = { to = 1, end = 1.0 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Glue {
     /// The names of the sheets of the two sides, if there are several; of a seam with a body the name of the
@@ -45,6 +46,7 @@ pub struct Glue {
     pub second: Option<SeamSide>,
     /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.
     #[serde(default = "closed")]
+    #[unit(Factor)]
     pub closing: Profile,
     /// Stiffness of each pair, N/m. If left out, `1e4 (m g + D / L) / L` with the mass `m` of all sheets,
     /// gravity `g` (9.8 m/s2 if there is none), the largest flexural rigidity `D` and the mean edge length
@@ -72,7 +74,7 @@ pub struct Glue {
 /// second = { line = { from = [0.3, 0, 0], to = [0.3, 0.02, 0] } }
 /// bend = { stiffness = 0.1 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct SeamBend {
     /// Torsional stiffness of a metre of the seam, N (newton metres per radian and metre).
@@ -95,7 +97,7 @@ fn closed() -> Profile {
 /// second = { vertices = [20, 41, 62] }
 /// closing = { ramp = { to = 1, end = 0.5 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SeamSide {
     /// Vertices by their numbers, from 0, in order.
@@ -211,8 +213,6 @@ impl Glue {
                 SeamSide::Vertices(_) => {}
             }
         }
-        self.closing
-            .check(key.name("closing"), Unit::Factor, checks);
         checks.positive(key.name("stiffness"), self.stiffness, Unit::NewtonPerMetre);
     }
 

@@ -1,6 +1,7 @@
 //! Joints that guide bodies.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::unit::Unit;
@@ -15,8 +16,9 @@ use serde::{Deserialize, Serialize};
 /// density = 1000
 /// guide = { hinge = { point = [-0.1, 0, 0], axis = [0, 1, 0] } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[checked]
 pub enum Guide {
     /// The body turns about an axis.
     Hinge {
@@ -30,6 +32,7 @@ pub enum Guide {
         /// The angle at which the spring is at rest, degrees; 0 is where the body is at the start. A stiff spring
         /// drives the body along it.
         #[serde(default)]
+        #[unit(Degree)]
         rest: Profile,
         /// Damping at the hinge, N m s/rad.
         #[serde(default)]
@@ -44,6 +47,7 @@ pub enum Guide {
         stiffness: f64,
         /// The displacement at which the spring is at rest, metres; 0 is where the body is at the start.
         #[serde(default)]
+        #[unit(Metre)]
         rest: Profile,
         /// Damping along it, N s/m.
         #[serde(default)]
@@ -64,12 +68,14 @@ pub enum Guide {
 /// mass = 0.1
 /// force = [{ direction = [1, 0, 0], size = { ramp = { to = 2, end = 1 } } }]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct BodyForce {
     /// Direction in space, of any length.
     pub direction: [f64; 3],
     /// Size, newtons.
+    #[unit(Newton)]
     pub size: Profile,
     /// The point of the body on which it acts, by its place at the start, metres; if left out, the centre of
     /// mass.
@@ -85,12 +91,14 @@ pub struct BodyForce {
 /// mass = 0.1
 /// torque = [{ axis = [0, 0, 1], size = 0.01 }]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct BodyTorque {
     /// Its axis in space, of any length; positive sizes turn counter-clockwise seen against it.
     pub axis: [f64; 3],
     /// Size, N m.
+    #[unit(NewtonMetre)]
     pub size: Profile,
 }
 
@@ -101,26 +109,24 @@ impl Guide {
                 point,
                 axis,
                 stiffness,
-                rest,
                 damping,
+                ..
             } => {
                 let key = key.name("hinge");
                 checks.finite(key.name("point"), point, Unit::Metre);
                 checks.direction(key.name("axis"), axis);
                 checks.not_negative(key.name("stiffness"), *stiffness, Unit::NewtonMetre);
-                rest.check(key.name("rest"), Unit::Degree, checks);
                 checks.not_negative(key.name("damping"), *damping, Unit::NewtonMetre);
             }
             Self::Slider {
                 direction,
                 stiffness,
-                rest,
                 damping,
+                ..
             } => {
                 let key = key.name("slider");
                 checks.direction(key.name("direction"), direction);
                 checks.not_negative(key.name("stiffness"), *stiffness, Unit::NewtonPerMetre);
-                rest.check(key.name("rest"), Unit::Metre, checks);
                 checks.not_negative(key.name("damping"), *damping, Unit::NewtonPerMetre);
             }
             Self::Ball { point } => {
@@ -144,21 +150,11 @@ impl Guide {
             Self::Ball { .. } => "ball",
         }
     }
-
-    /// The function of time at which its spring is at rest.
-    pub(super) fn rest_mut(&mut self) -> Option<(&'static str, &mut Profile)> {
-        match self {
-            Self::Hinge { rest, .. } => Some(("hinge.rest", rest)),
-            Self::Slider { rest, .. } => Some(("slider.rest", rest)),
-            Self::Ball { .. } => None,
-        }
-    }
 }
 
 impl BodyForce {
     pub(super) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.direction(key.name("direction"), &self.direction);
-        self.size.check(key.name("size"), Unit::Newton, checks);
         if let Some(point) = &self.at {
             checks.finite(key.name("at"), point, Unit::Metre);
         }
@@ -168,6 +164,5 @@ impl BodyForce {
 impl BodyTorque {
     pub(super) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.direction(key.name("axis"), &self.axis);
-        self.size.check(key.name("size"), Unit::NewtonMetre, checks);
     }
 }

@@ -74,10 +74,12 @@ mod mesh;
 mod mesh_file;
 mod method;
 mod named_file;
+mod names;
 mod obstacle_names;
 mod obstacles;
 mod outline;
 mod output;
+mod part;
 mod patch;
 mod patched;
 mod pattern;
@@ -159,6 +161,7 @@ pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
 pub use outline::{Outline, OutlineShape};
 pub use output::Output;
+pub(crate) use part::{AnyPart, Part, Place, See, SeeMut};
 pub use patch::Patch;
 pub use pattern::{
     AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
@@ -181,6 +184,7 @@ pub use support_forces::{SupportForces, SupportLoad};
 pub use supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
 pub use switch::{Condition, Threshold, When};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
+pub(crate) use unit::Unit;
 pub use unit::{UnitRange, UsualSize};
 pub use up_axis::UpAxis;
 pub use warning::Warning;
@@ -188,7 +192,7 @@ pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
 pub use build::Kept;
-pub use functions::Moved;
+pub use functions::{Function, Moved};
 pub use mesh_file::Files;
 pub use named_file::{FileKind, NamedFile};
 pub use resolution::check_positions;
@@ -200,7 +204,6 @@ pub use under_way::UnderWay;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// The version of the format of scene files.
 pub const VERSION: u32 = 1;
@@ -220,7 +223,7 @@ pub const VERSION: u32 = 1;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the format: 1.
@@ -324,13 +327,8 @@ impl Scene {
             checks.report(root.name("version"), message, "write `version = 1`");
         }
         sheets::check(&self.sheet, &mut checks);
-        let is_known = |name: &Option<String>, key: &Key, checks: &mut Checks| {
-            sheets::check_reference(&self.sheet, name.as_deref(), &key.name("sheet"), checks);
-        };
-        for (key, crease) in root.name("crease").entries(&self.crease) {
-            crease.check(&key, &mut checks);
-            is_known(&crease.sheet, &key, &mut checks);
-        }
+        part::check_all(self, &Place::of(root.clone()), &mut checks);
+        self.check_names(&mut checks);
         if let Some(folding) = &self.folding {
             let key = root.name("folding");
             match sheets::one_of(&self.sheet, folding.sheet.as_deref(), &key, "the creases") {
@@ -341,63 +339,22 @@ impl Scene {
         for (key, glue) in root.name("glue").entries(&self.glue) {
             glue.check(&self.sheet, &self.body, &key, &mut checks);
         }
-        for (key, weight) in root.name("weight").entries(&self.weight) {
-            weight.check(&key, &mut checks);
-            is_known(&weight.sheet, &key, &mut checks);
-        }
-        for (key, support) in root.name("support").entries(&self.support) {
-            support.check(&key, &mut checks);
-            is_known(&support.sheet, &key, &mut checks);
-        }
-        for (key, load) in root.name("forces.load").entries(&self.forces.load) {
-            is_known(&load.sheet, &key, &mut checks);
-        }
-        for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
-            obstacle.check(&key, &mut checks);
-        }
         obstacle_names::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
         bodies::check(&self.body, &self.sheet, &mut checks);
-        self.forces
-            .check(&self.sheet, &root.name("forces"), &mut checks);
-        if let Some(air) = &self.air {
-            air.check(&self.sheet, &root.name("air"), &mut checks);
-        }
         let contact = root.name("contact");
         self.contact
             .check(&self.body, &self.obstacle, &contact, &mut checks);
-        for (k, pair) in self.contact.pair.iter().enumerate() {
-            let key = root.name("contact.pair").entry(k).name("sheets");
-            for (i, name) in pair.sheets.iter().enumerate() {
-                let key = key.entry(i);
-                let of_sheets = self.sheet.iter().filter_map(|sheet| sheet.name.clone());
-                let of_obstacles = self.obstacle.iter().filter_map(|o| o.name.clone());
-                let known = of_sheets
-                    .chain(bodies::names(&self.body))
-                    .chain(of_obstacles);
-                let known: Vec<String> = known.collect();
-                if !known.contains(name) {
-                    let meant = "sheet, body or obstacle";
-                    let problem = sheets::unknown_name(meant, known.into_iter(), name, &key);
-                    checks.problems.push(problem);
-                }
-            }
-        }
         for (key, measure) in root.name("measure").entries(&self.measure) {
             let of = (&self.crease[..], self.folding.as_ref(), &self.forces);
             measure.check(&key, of, &mut checks);
-            let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
-            bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
-        self.forces.check_names(&root.name("forces"), &mut checks);
         Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
         self.check_steps_resolve(&mut checks);
-        self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;
         self.stop.check(step, &root.name("stop"), &mut checks);
-        self.output.check(&root.name("output"), &mut checks);
         checks
     }
 
@@ -450,54 +407,6 @@ impl Scene {
     /// Whether contact is modelled.
     pub fn has_contact(&self) -> bool {
         !self.obstacle.is_empty() || !self.body.is_empty() || self.contact.self_contact
-    }
-
-    /// The mesh files that the scene names, in the order of the scene.
-    pub fn files(&self) -> Vec<(Key, PathBuf)> {
-        let mut scene = self.clone();
-        let files = scene.files_mut().into_iter();
-        files.map(|file| (file.key, file.path.clone())).collect()
-    }
-
-    /// The files that the scene names.
-    pub fn files_mut(&mut self) -> Vec<NamedFile<'_>> {
-        let (root, mut files) = (Key::root(), Vec::new());
-        let count = self.sheet.len();
-        for (k, sheet) in self.sheet.iter_mut().enumerate() {
-            let key = sheets::sheet_key(count, k);
-            match &mut sheet.mesh {
-                Mesh::File(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.file"), &mut file.path));
-                }
-                Mesh::Drawing(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.drawing"), &mut file.path));
-                }
-                _ => {}
-            }
-            if let Some(file) = &mut sheet.start.file {
-                files.push(NamedFile::mesh(key.name("start.file"), &mut file.path));
-            }
-            let curl = sheet.curl.as_mut();
-            if let Some(file) = curl.and_then(|curl| curl.shape.as_mut()) {
-                files.push(NamedFile::mesh(key.name("curl.shape"), &mut file.path));
-            }
-        }
-        for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
-            let key = root.name("obstacle").entry(k).name("shape");
-            files.extend(obstacle.shape.file_mut(&key));
-        }
-        for (k, body) in self.body.iter_mut().enumerate() {
-            let key = root.name("body").entry(k).name("shape");
-            files.extend(body.shape.file_mut(&key));
-        }
-        for (k, support) in self.support.iter_mut().enumerate() {
-            if let Hold::Follow { sequence, .. } = &mut support.hold {
-                let key = root.name("support").entry(k).name("hold.follow.sequence");
-                let path = sequence.path.as_mut();
-                files.extend(path.map(|path| NamedFile::motion(key, path)));
-            }
-        }
-        files
     }
 }
 

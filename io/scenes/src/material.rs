@@ -1,6 +1,7 @@
 //! The material of the sheet.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::toml_problem::suggestion;
 use super::unit::Unit;
@@ -22,7 +23,7 @@ use std::fmt;
 /// [sheet]
 /// material = "office paper"
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
 pub enum Material {
     /// One of the materials that have a name.
@@ -39,7 +40,7 @@ pub enum Material {
 /// [sheet]
 /// material = { youngs = 2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
     /// Young's modulus, Pa: steel has 2.1e11.

@@ -6,6 +6,7 @@ use super::fold_group::FoldGroup;
 use super::folding::{FoldTargets, Folding};
 use super::forces::Forces;
 use super::key::Key;
+use super::part::Part;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
 use super::plain_name::check_name;
@@ -13,7 +14,7 @@ use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
 use isosheet_dynamics::{At, CreaseSprings, Memories};
-use isosheet_mesh::{EdgeId, Part, VertexId};
+use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,7 +49,7 @@ use std::sync::Arc;
 ///
 /// Creases that `[folding]` folds are named as in its `order`: `fold = "valleys"` or
 /// `fold = { edges = [3, 7] }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
     /// Its name, of letters, digits, `_` and `-`.
@@ -82,7 +83,7 @@ pub struct Measure {
 /// at = { vertices = [0] }
 /// quantity = { distance_to_point = [0, 0, 0] }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Quantity {
     /// Its x coordinate.
@@ -124,13 +125,8 @@ impl Measure {
     pub(crate) fn check(&self, key: &Key, of: OfScene<'_>, checks: &mut Checks) {
         check_name(&self.name, key.name("name"), "a measure", checks);
         self.check_of(key, of, checks);
-        let key = key.name("quantity");
-        match &self.quantity {
-            Quantity::DistanceToPoint(point) => {
-                checks.finite(key.name("distance_to_point"), point, Unit::Metre);
-            }
-            Quantity::DistanceTo(others) => others.check(&key.name("distance_to"), checks),
-            _ => {}
+        if let Quantity::DistanceToPoint(point) = &self.quantity {
+            checks.finite(key.name("quantity.distance_to_point"), point, Unit::Metre);
         }
     }
 
@@ -151,7 +147,7 @@ impl Measure {
             checks.report(key.name("quantity"), message, remedy);
         }
         match (&self.at, &self.crease, &self.fold) {
-            (Some(at), None, None) if !of_crease => at.check(&key.name("at"), checks),
+            (Some(_), None, None) if !of_crease => {}
             (None, None, Some(group)) if of_crease => {
                 group.check(&key.name("fold"), checks);
                 if folding.is_none() {
@@ -426,7 +422,7 @@ pub(super) struct CreaseGauge {
     /// The springs that are measured, by their numbers, with the rest length of the edge of each, metres.
     pub(super) measured: Vec<(usize, f64)>,
     /// Its sheet.
-    pub(super) part: Part,
+    pub(super) part: isosheet_mesh::Part,
     /// The number of the springs among the potentials of the model.
     pub(super) potential: usize,
     /// Other springs at some of its edges, with their numbers.

@@ -6,6 +6,7 @@ use super::error::SceneError;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::outline::Outline;
+use super::part::Part;
 use super::pattern::{
     DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
@@ -24,7 +25,7 @@ use std::path::Path;
 /// [sheet]
 /// mesh = { rectangle = { width = 0.297, height = 0.21, columns = 12, rows = 8, diagonals = "rising" } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Mesh {
     /// The square `[0, side] x [0, side]` in the union-jack pattern, 2^(level + 1) cells each way.
@@ -128,7 +129,7 @@ pub enum Mesh {
 }
 
 /// How the cells of a rectangle are cut into triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Diagonals {
     /// In alternating directions.
@@ -327,8 +328,6 @@ impl Mesh {
             Self::Triangles { vertices, .. } => {
                 checks.points(key.name("vertices"), vertices);
             }
-            Self::File(file) => file.check(&key, checks),
-            Self::Drawing(drawing) => drawing.check(&key, checks),
             _ => {}
         }
     }

@@ -2,6 +2,7 @@
 
 use super::foreign;
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
 use super::unit::Unit;
@@ -25,8 +26,9 @@ use std::sync::Arc;
 /// [sheet]
 /// mesh = { file = { path = "crane.fold", scale = 0.001, frame = 0 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct MeshFile {
     /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
@@ -58,7 +60,7 @@ fn one() -> f64 {
 }
 
 /// What to do with faces of more than three corners.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum PolygonFaces {
     /// Refuse the file: new diagonals are new lines along which the sheet can fold.

@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::integration::Integration;
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_dynamics as engine;
@@ -18,8 +19,9 @@ use serde::{Deserialize, Serialize};
 /// step = 0.005
 /// fallback = "implicit_euler"
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Method {
     /// The integrator.
     pub integrator: Integrator,
@@ -52,7 +54,7 @@ pub struct Method {
 }
 
 /// The integrator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
     /// The second-order backward differentiation formula: lightly damped, takes any state, contact and
@@ -73,7 +75,7 @@ pub enum Integrator {
 }
 
 /// What to do when even the smallest part of a step is rejected.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// End the run with an error.
@@ -84,7 +86,7 @@ pub enum Fallback {
 }
 
 /// What to do when moving supports ask for more than the lengths allow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Taut {
     /// End the run with an error.

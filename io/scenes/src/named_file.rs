@@ -1,6 +1,8 @@
 //! Files that a scene names.
 
-use super::key::Key;
+use super::Scene;
+use super::key::{Key, KeyPart};
+use super::part::{all, all_mut};
 use std::path::PathBuf;
 
 /// What a file of a scene is.
@@ -22,16 +24,34 @@ pub struct NamedFile<'a> {
     pub path: &'a mut PathBuf,
 }
 
-impl<'a> NamedFile<'a> {
-    /// A mesh file.
-    pub(super) fn mesh(key: Key, path: &'a mut PathBuf) -> Self {
-        let kind = FileKind::Mesh;
-        Self { key, kind, path }
+impl Scene {
+    /// The files that the scene names, in the order of the scene.
+    pub fn files(&self) -> Vec<(Key, PathBuf)> {
+        let paths = all::<PathBuf>(self, Key::root()).into_iter();
+        paths
+            .map(|(at, path)| (file_of(&at.key), path.clone()))
+            .collect()
     }
 
-    /// A mesh in motion.
-    pub(super) fn motion(key: Key, path: &'a mut PathBuf) -> Self {
-        let kind = FileKind::Motion;
-        Self { key, kind, path }
+    /// The files that the scene names, so that their paths can be changed.
+    pub fn files_mut(&mut self) -> Vec<NamedFile<'_>> {
+        let paths = all_mut(self, Key::root()).into_iter();
+        let named = paths.map(|(at, path)| {
+            let key = file_of(&at.key);
+            let is_motion =
+                matches!(key.parts().last(), Some(KeyPart::Name(name)) if name == "sequence");
+            let kind = if is_motion {
+                FileKind::Motion
+            } else {
+                FileKind::Mesh
+            };
+            NamedFile { key, kind, path }
+        });
+        named.collect()
     }
+}
+
+/// The place of the file of a path.
+fn file_of(path: &Key) -> Key {
+    path.above().unwrap_or_default()
 }

@@ -3,8 +3,8 @@
 use super::friction::Friction;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
-use super::named_file::NamedFile;
 use super::outline::Outline;
+use super::part::Part;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
@@ -24,8 +24,9 @@ use std::sync::Arc;
 /// motion = { z = { smooth_step = { to = 0.1, end = 1 } } }
 /// friction = 0.3
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Obstacle {
     /// Its name, by which `contact.pair` names it. If left out, it has none.
     #[serde(default)]
@@ -50,7 +51,7 @@ pub struct Obstacle {
 /// shape = { capsule = { radius = 0.05, length = 0.3 } }
 /// pose = { position = [0, 0, -0.1], turn = { axis = [1, 0, 0], angle = 90 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
     /// Everything with z <= 0: a floor.
@@ -120,7 +121,7 @@ pub enum Shape {
 /// shape = { wall = { line = [[0, 0], [0.3, 0], [0.5, 0.2]], corner_radius = 0.1, width = 0.4 } }
 /// pose = { position = [0, 0, -1] }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// The points of its line, x and z in metres.
@@ -166,14 +167,11 @@ impl Obstacle {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.shape.check(&key.name("shape"), checks);
-        self.pose.check(&key.name("pose"), checks);
-        self.motion.check(&key.name("motion"), checks);
         if matches!(self.shape, Shape::Sequence(_)) && self.motion != Motion::default() {
             let message = "the obstacle is a mesh in motion, and moves besides";
             let remedy = "leave out `motion`, and place the mesh by `pose`";
             checks.report(key.name("motion"), message, remedy);
         }
-        self.friction.check(&key.name("friction"), checks);
     }
 }
 
@@ -229,8 +227,7 @@ impl Shape {
                 checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }
             Shape::Triangles { vertices, .. } => checks.points(shape.name("vertices"), vertices),
-            Shape::File(file) => file.check(&shape, checks),
-            Shape::Sequence(sequence) => sequence.check(&shape, checks),
+            Shape::File(_) | Shape::Sequence(_) => {}
         }
     }
 
@@ -247,19 +244,6 @@ impl Shape {
             Self::Triangles { .. } => "triangles",
             Self::File(_) => "file",
             Self::Sequence(_) => "sequence",
-        }
-    }
-
-    /// The file that it is; `key` is its own place.
-    pub(super) fn file_mut(&mut self, key: &Key) -> Option<NamedFile<'_>> {
-        let key = key.name(self.name());
-        match self {
-            Self::File(file) => Some(NamedFile::mesh(key, &mut file.path)),
-            Self::Sequence(sequence) => {
-                let path = sequence.path.as_mut()?;
-                Some(NamedFile::motion(key, path))
-            }
-            _ => None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Outlines in the plane.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_mesh::generate::regular_outline;
@@ -17,7 +18,7 @@ use std::fmt;
 /// outline = [[0, 0], [0.3, 0], [0.2, 0.2]]
 /// spacing = 0.02
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
 pub enum Outline {
     /// The corners.
@@ -36,7 +37,7 @@ const MOST_SIDES: f64 = 1e4;
 /// outline = { regular = { sides = 6, radius = 0.1 } }
 /// rings = 5
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum OutlineShape {
     /// A regular polygon about the origin. The x axis leads through the middle of a side.

@@ -1,6 +1,7 @@
 //! What a run writes.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use schemars::JsonSchema;
@@ -13,8 +14,9 @@ use serde::{Deserialize, Serialize};
 /// frames_per_second = 60
 /// obj = true
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Output {
     /// Frames per second of simulated time. A frame is taken after a whole number of steps, the nearest to
     /// this rate.

@@ -1,6 +1,7 @@
 //! A part of a sheet that is of another material.
 
 use super::material::Material;
+use super::part::Part;
 use super::selection::Selection;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// at = { box = { min = [0.05, 0, -1], max = [0.1, 0.05, 1] } }
 /// material = "card"
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Patch {
     /// Its faces: those by number or of the group, or otherwise those all corners of which are selected.

@@ -34,7 +34,6 @@ pub(super) fn check(sheet: &Sheet, key: &Key, checks: &mut Checks) {
 
 fn check_patch(patch: &Patch, sheet: &Sheet, key: &Key, checks: &mut Checks) {
     let before = checks.problems.len();
-    patch.at.check(&key.name("at"), checks);
     patch.material.check(&key.name("material"), checks);
     let density = patch.density;
     checks.positive(key.name("density"), density, Unit::KilogramPerSquareMetre);

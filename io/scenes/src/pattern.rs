@@ -1,5 +1,6 @@
 //! Crease patterns by formula.
 
+use super::part::Part;
 use isosheet_formats::DrawnEdges;
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// zigzag = 0.05
 /// angle = 60
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Miura {
     /// Number of panels along x.
@@ -43,7 +44,7 @@ pub struct Miura {
 /// radius = 0.1
 /// alike = "odd"
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct DegreeFour {
     /// Angles from crease 1 to 2 and from 2 to 3, degrees; the other two are what is left of 180 degrees of
@@ -56,7 +57,7 @@ pub struct DegreeFour {
 }
 
 /// The creases of a vertex of degree four that fold alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum AlikeCreases {
     /// Creases 1 and 3.
@@ -75,7 +76,7 @@ pub enum AlikeCreases {
 /// rows = 4
 /// side = 0.04
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Waterbomb {
     /// Number of squares along x.
@@ -97,7 +98,7 @@ pub struct Waterbomb {
 /// base = 0.06
 /// height = 0.02
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Yoshimura {
     /// Number of triangles of each kind, upright and upside down, in a band along x.
@@ -121,7 +122,7 @@ pub struct Yoshimura {
 /// side = 0.06
 /// angle = 60
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Kresling {
     /// Number of parallelograms along x.
@@ -145,7 +146,7 @@ pub struct Kresling {
 /// side = 0.2
 /// rings = 8
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Hypar {
     /// Number of squares, the edge of the sheet included.
@@ -162,7 +163,7 @@ pub struct Hypar {
 /// square = 0.05
 /// angle = 30
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct SquareTwist {
     /// Side of the sheet, metres.

@@ -1,6 +1,7 @@
 //! Where things are and how they move.
 
 use super::key::Key;
+use super::part::Part;
 use super::poses::{FramePose, Poses, TimedPose};
 use super::problem::Checks;
 use super::profile::Profile;
@@ -16,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// [sheet.placement]
 /// turn = { axis = [0, 0, 1], angle = 45 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
     /// Direction of the axis, of any length.
@@ -31,8 +32,9 @@ pub struct Turn {
 /// [sheet]
 /// placement = { position = [0, 0, 0.3], turn = { axis = [1, 0, 0], angle = 90 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Pose {
     /// Where the origin comes to lie, metres.
     pub position: [f64; 3],
@@ -101,14 +103,18 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 /// z = { smooth_step = { to = 0.1, end = 1 } }
 /// rotation = { centre = [0, 0, 0], axis = [1, 0, 0], angle = { ramp = { to = 90, end = 1 } } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Motion {
     /// Displacement along x, metres.
+    #[unit(Metre)]
     pub x: Profile,
     /// Displacement along y, metres.
+    #[unit(Metre)]
     pub y: Profile,
     /// Displacement along z, metres.
+    #[unit(Metre)]
     pub z: Profile,
     /// The rotation, if there is one.
     pub rotation: Option<Rotation>,
@@ -126,7 +132,7 @@ pub struct Motion {
 /// [obstacle.motion]
 /// rotation = { centre = [0, 0, 0], axis = [0, 0, 1], angle = { run_up = { rate = 90, end = 0.5 } } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
     /// A point of the axis at zero displacement, metres.
@@ -134,6 +140,7 @@ pub struct Rotation {
     /// Direction of the axis, of any length; positive angles turn counter-clockwise seen against it.
     pub axis: [f64; 3],
     /// Angle, degrees.
+    #[unit(Degree)]
     pub angle: Profile,
 }
 
@@ -205,29 +212,19 @@ impl Motion {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        self.x.check(key.name("x"), Unit::Metre, checks);
-        self.y.check(key.name("y"), Unit::Metre, checks);
-        self.z.check(key.name("z"), Unit::Metre, checks);
         if let Some(rotation) = &self.rotation {
             let key = key.name("rotation");
             checks.finite(key.name("centre"), &rotation.centre, Unit::Metre);
             checks.direction(key.name("axis"), &rotation.axis);
-            rotation
-                .angle
-                .check(key.name("angle"), Unit::Degree, checks);
         }
-        if let Some(poses) = &self.poses {
-            let key = key.name("poses");
-            poses.check(&key, checks);
-            let poses = self.poses.clone();
-            if *self
-                != (Self {
-                    poses,
-                    ..Self::default()
-                })
-            {
+        if self.poses.is_some() {
+            let others = Self {
+                poses: None,
+                ..self.clone()
+            };
+            if others != Self::default() {
                 let message = "poses stand in place of `x`, `y`, `z` and `rotation`, which the motion has, too";
-                checks.report(key, message, "leave out one or the other");
+                checks.report(key.name("poses"), message, "leave out one or the other");
             }
         }
     }

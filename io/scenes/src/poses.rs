@@ -1,6 +1,7 @@
 //! Motions through poses.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use isosheet_dynamics::{Keyframe, MotionError, RigidProfile};
@@ -27,8 +28,9 @@ const ROUND_OFF: f64 = 1e-6;
 ///     { time = 1, position = [0, 0.05, 0.1], orientation = [0.9238795, 0, 0.3826834, 0] },
 /// ]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Poses {
     /// The poses, in the order of time.
     pub keys: Vec<TimedPose>,
@@ -55,7 +57,7 @@ pub struct Poses {
 ///     { time = 1, position = [0, 0, 0.1], orientation = [0.7071068, 0, 0, 0.7071068] },
 /// ]
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct FramePose {
     /// Its origin, metres.
@@ -72,7 +74,7 @@ pub struct FramePose {
 /// shape = { sphere = { radius = 0.05 } }
 /// motion = { poses = { keys = [{ position = [0, 0, 0] }, { time = 1, position = [0.1, 0, 0] }] } }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct TimedPose {
     /// When, seconds.

@@ -1,6 +1,7 @@
 //! Functions of time.
 
 use super::key::Key;
+use super::part::{Part, Place};
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_dynamics as engine;
@@ -120,6 +121,15 @@ pub enum Interpolation {
     Linear,
     /// Cubic polynomials with a continuous rate, which do not overshoot.
     MonotoneCubic,
+}
+
+impl Part for Profile {
+    fn check_own(&self, at: &Place, checks: &mut Checks) {
+        let unit = at
+            .unit
+            .expect("fields that are functions of time have a unit");
+        self.check(at.key.clone(), unit, checks);
+    }
 }
 
 impl Default for Profile {
@@ -260,7 +270,7 @@ impl Profile {
     }
 
     /// Checks the course; `unit` is that of what it drives.
-    pub(crate) fn check(&self, key: Key, unit: Unit, checks: &mut Checks) {
+    fn check(&self, key: Key, unit: Unit, checks: &mut Checks) {
         let Err(error) = self.as_given().validate() else {
             let (times, values) = self.numbers();
             for time in times {

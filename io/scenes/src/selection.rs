@@ -1,6 +1,7 @@
 //! Which vertices are meant.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use isosheet_formats::FaceGroups;
@@ -16,8 +17,9 @@ use serde::{Deserialize, Serialize};
 /// [[support]]
 /// at = { box = { min = [-0.01, -0.01, -0.01], max = [0.01, 1, 0.01] } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[checked]
 pub enum Selection {
     /// All vertices.
     All,

@@ -1,8 +1,10 @@
 //! The selections of vertices of a scene.
 
+use super::key::{Key, KeyPart};
+use super::part::all;
 use super::selection::Selection;
-use super::sheets::sheet_key;
-use super::{Key, Quantity, Scene, bodies};
+use super::{Scene, bodies};
+use std::collections::BTreeMap;
 
 /// A selection of vertices of a scene.
 pub(super) struct Selected<'a> {
@@ -15,50 +17,29 @@ pub(super) struct Selected<'a> {
 impl Scene {
     /// All selections of vertices of sheets at their start.
     pub(super) fn selections(&self) -> Vec<Selected<'_>> {
-        let mut all = Vec::new();
-        let entry = |name: &str, k: usize| Key::root().name(name).entry(k);
-        let mut add = |key: Key, sheet, at| all.push(Selected { key, sheet, at });
-        for (k, sheet) in self.sheet.iter().enumerate() {
-            let key = sheet_key(self.sheet.len(), k).name("patch");
-            for (key, patch) in key.entries(&sheet.patch) {
-                add(key.name("at"), sheet.name.as_ref(), &patch.at);
-            }
-        }
-        for (k, support) in self.support.iter().enumerate() {
-            let key = entry("support", k).name("at");
-            add(key, support.sheet.as_ref(), &support.at);
-        }
-        for (k, load) in self.forces.load.iter().enumerate() {
-            let key = entry("forces.load", k).name("at");
-            add(key, load.sheet.as_ref(), &load.at);
-        }
-        for (k, moment) in self.forces.moment.iter().enumerate() {
-            let key = entry("forces.moment", k).name("at");
-            add(key, moment.sheet.as_ref(), &moment.at);
-        }
-        for (k, pressure) in self.forces.pressure.iter().enumerate() {
-            add(entry("forces.pressure", k).name("at"), None, &pressure.at);
-        }
-        if let Some(flow) = self.air.as_ref().and_then(|air| air.attached.as_ref()) {
-            let key = Key::root().name("air.attached.trailing");
-            add(key, flow.sheet.as_ref(), &flow.trailing);
-        }
-        for (k, weight) in self.weight.iter().enumerate() {
-            let key = entry("weight", k).name("at");
-            add(key, weight.sheet.as_ref(), &weight.at);
-        }
-        for (k, measure) in self.measure.iter().enumerate() {
-            let (key, sheet) = (entry("measure", k), measure.sheet.as_ref());
-            if sheet.is_some_and(|name| bodies::number_of(&self.body, name).is_some()) {
-                continue;
-            }
-            if let Some(at) = &measure.at {
-                add(key.name("at"), sheet, at);
-            }
-            if let Quantity::DistanceTo(others) = &measure.quantity {
-                add(key.name("quantity.distance_to"), sheet, others);
-            }
-        }
-        all
+        let texts = all::<String>(self, Key::root()).into_iter();
+        let texts: BTreeMap<String, &String> =
+            texts.map(|(at, text)| (at.key.to_string(), text)).collect();
+        let selected = all(self, Key::root())
+            .into_iter()
+            .map(|(at, selection)| Selected {
+                sheet: name_of_sheet(&at.key, &texts),
+                key: at.key,
+                at: selection,
+            });
+        let is_of_body = |name: &&String| bodies::number_of(&self.body, name).is_some();
+        selected
+            .filter(|of| of.sheet.filter(is_of_body).is_none())
+            .collect()
     }
+}
+
+/// The name of the sheet that a part of a scene is in, or that stands nearest to the part as `sheet`.
+fn name_of_sheet<'a>(key: &Key, texts: &BTreeMap<String, &'a String>) -> Option<&'a String> {
+    let name = match key.parts() {
+        [KeyPart::Name(first), ..] if first == "sheet" => "name",
+        _ => "sheet",
+    };
+    let mut above = std::iter::successors(key.above(), Key::above);
+    above.find_map(|above| texts.get(&above.name(name).to_string()).copied())
 }

@@ -1,6 +1,7 @@
 //! Meshes in motion, from files or as numbers.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use super::up_axis::UpAxis;
@@ -17,8 +18,9 @@ use std::path::{Path, PathBuf};
 /// [[obstacle]]
 /// shape = { sequence = { path = "body.npz", up = "y" } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Sequence {
     /// Path, relative to the scene file: the folder of a run, whose trajectory is taken; an archive of numpy
     /// (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0), which
@@ -62,7 +64,7 @@ pub struct Sequence {
 /// positions = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0.1], [1, 0, 0.1], [0, 1, 0.1]]]
 /// faces = [[0, 1, 2]]
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFrames {
     /// The times of the frames, seconds, in their order.
@@ -111,7 +113,7 @@ impl MeshFrames {
 }
 
 /// What a mesh in motion does before its first and after its last time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Outside {
     /// Nothing: a run that needs it is refused.

@@ -5,6 +5,7 @@ use super::direction::Direction;
 use super::key::Key;
 use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
+use super::part::Part;
 use super::patch::Patch;
 use super::pose::Pose;
 use super::problem::Checks;
@@ -28,7 +29,7 @@ use serde::{Deserialize, Serialize};
 /// thickness = 0.0001
 /// damping = 2
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Sheet {
     /// Its name, which each of several sheets has to have.
@@ -77,10 +78,12 @@ pub struct Sheet {
     /// The part by which all its lengths grow by themselves, a function of time from -0.2 to 0.2: negative for
     /// paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
     #[serde(default)]
+    #[unit(Factor)]
     pub swell: Option<Profile>,
     /// The factor of its resistance to bending, a function of time above 0: paper whose glue dries, film that is heated.
     /// If left out, it stays.
     #[serde(default)]
+    #[unit(Factor)]
     pub stiffening: Option<Profile>,
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
@@ -119,7 +122,7 @@ pub struct Elasticity {
 /// isometry = { elastic = { stiffness = 3e5, limit = 0.05 } }
 /// bending = { plate = { rigidity = 5e-4 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Isometry {
     /// Rigid rods along all edges: exact lengths, folds along the lines of the mesh alone.
@@ -158,7 +161,7 @@ pub enum Isometry {
 /// material = "office paper"
 /// rest = "mesh"
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum RestShape {
     /// The sheet unbends, however its mesh is curved.
@@ -174,7 +177,7 @@ pub enum RestShape {
 /// [sheet]
 /// bending = { plate = { rigidity = 5e-4 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Bending {
     /// Nothing: the sheet is limp.
@@ -513,9 +516,8 @@ impl Sheet {
         if let Some(bending) = &self.bending {
             bending.check(&key.name("bending"), checks);
         }
-        if let Some(yields) = &self.yields {
+        if self.yields.is_some() {
             let key = key.name("yield");
-            yields.check(&key, checks);
             if self.yields().is_none() {
                 checks.report(
                     key.clone(),
@@ -549,7 +551,6 @@ impl Sheet {
         }
         if let Some(swell) = &self.swell {
             let key = key.name("swell");
-            swell.check(key.clone(), Unit::Factor, checks);
             if swell.as_given().validate().is_ok() {
                 for part in swell.range(0.0) {
                     checks.within(key.clone(), part, engine::ElasticSheet::SWELLING);
@@ -565,7 +566,6 @@ impl Sheet {
         }
         if let Some(stiffening) = &self.stiffening {
             let key = key.name("stiffening");
-            stiffening.check(key.clone(), Unit::Factor, checks);
             if stiffening.as_given().validate().is_ok() {
                 let [least, _] = stiffening.range(0.0);
                 checks.positive(key.clone(), least, Unit::Factor);
@@ -591,8 +591,6 @@ impl Sheet {
                 "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
             );
         }
-        self.placement.check(&key.name("placement"), checks);
-        self.start.check(&key.name("start"), checks);
     }
 }
 

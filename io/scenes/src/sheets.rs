@@ -1,6 +1,7 @@
 //! One sheet, or several.
 
 use super::key::Key;
+use super::part::{Place, See, SeeMut};
 use super::patched;
 use super::problem::{Checks, Problem};
 use super::sheet::Sheet;
@@ -50,13 +51,37 @@ pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Shee
     from.deserialize_any(Either)
 }
 
+/// Shows the sheets.
+pub(super) fn shared<'a>(sheets: &'a [Sheet], at: impl FnOnce() -> Place, see: See<'_, 'a>) {
+    let (at, count) = (at(), sheets.len());
+    for (k, sheet) in sheets.iter().enumerate() {
+        see(place(&at, count, k), sheet);
+    }
+}
+
+/// Shows the sheets so that they can be changed.
+pub(super) fn mutable<'a>(
+    sheets: &'a mut [Sheet],
+    at: impl FnOnce() -> Place,
+    see: SeeMut<'_, 'a>,
+) {
+    let (at, count) = (at(), sheets.len());
+    for (k, sheet) in sheets.iter_mut().enumerate() {
+        see(place(&at, count, k), sheet);
+    }
+}
+
+/// The place of one of so many sheets, by that of all.
+fn place(all: &Place, count: usize, number: usize) -> Place {
+    match count {
+        1 => all.clone(),
+        _ => all.entry(number),
+    }
+}
+
 /// The key of one of so many sheets.
 pub(super) fn sheet_key(count: usize, number: usize) -> Key {
-    let key = Key::root().name("sheet");
-    match count {
-        1 => key,
-        _ => key.entry(number),
-    }
+    place(&Place::of(Key::root().name("sheet")), count, number).key
 }
 
 /// Checks the sheets.

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::mesh_file::MeshFile;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use nalgebra::Vector3;
@@ -14,8 +15,9 @@ use serde::{Deserialize, Serialize};
 /// [sheet]
 /// start = { perturbation = 0.01, seed = 1, velocity = [1, 0, 2], spin = { axis = [0, 1, 0], rate = 360 } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct Start {
     /// A mesh file with the vertices and faces of `mesh` in the same order, whose positions are those at the
     /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
@@ -43,8 +45,9 @@ pub struct Start {
 /// velocity = [0, 0, 3]
 /// spin = { axis = [1, 0, 0], rate = 720 }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Spin {
     /// Direction of the axis in space, of any length; it turns counter-clockwise seen against it.
     pub axis: [f64; 3],
@@ -59,9 +62,6 @@ impl Start {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let size = key.name("perturbation");
         checks.within(size, self.perturbation, [0.0, 1.0]);
-        if let Some(file) = &self.file {
-            file.check(&key.name("file"), checks);
-        }
         if let Some(positions) = &self.positions {
             let key = key.name("positions");
             checks.points(key.clone(), positions);
@@ -78,9 +78,6 @@ impl Start {
         }
         checks.count(key.name("seed"), self.seed, 0);
         checks.finite(key.name("velocity"), &self.velocity, Unit::MetrePerSecond);
-        if let Some(spin) = &self.spin {
-            spin.check(&key.name("spin"), checks);
-        }
     }
 
     /// Whether the sheet starts with another shape than that of its mesh.

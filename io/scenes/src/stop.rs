@@ -1,6 +1,7 @@
 //! When a run ends.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_mesh::wording::{brief, given};
@@ -18,7 +19,7 @@ const MOST_STEPS: f64 = 1e9;
 /// time = 5
 /// rest = { speed = 0.001, duration = 0.2 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stop {
     /// Simulated time, seconds.
@@ -36,7 +37,7 @@ pub struct Stop {
 /// [stop]
 /// rest = { speed = 0.001, duration = 0.2 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Rest {
     /// Largest speed of a vertex, m/s.

@@ -1,6 +1,7 @@
 //! What holds the sheet.
 
 use super::key::Key;
+use super::part::{Part, all};
 use super::pose::Motion;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
@@ -26,8 +27,9 @@ use serde::{Deserialize, Serialize};
 /// at = "boundary"
 /// hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } } } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Support {
     /// The name of the sheet, if there are several and not the vertices of all are meant.
     #[serde(default)]
@@ -53,7 +55,7 @@ pub struct Support {
 /// at = { vertices = [0] }
 /// hold = { moving_pin = { x = { smooth_step = { to = 0.05, end = 0.5 } } } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Hold {
     /// Where they are at the start.
@@ -113,7 +115,7 @@ pub enum Hold {
 /// at = { group = "waistband" }
 /// hold = { follow = { sequence = { path = "body.npz" }, vertices = "nearest" } }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Followed {
     /// Of each vertex the one that is nearest at the start.
@@ -132,8 +134,9 @@ pub enum Followed {
 /// at = { vertices = [0] }
 /// hold = { curve = { shape = { line = { point = [0, 0, 0], direction = [1, 0, 0] } } } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[checked]
 pub enum Curve {
     /// A straight line without ends.
     Line {
@@ -172,7 +175,7 @@ pub enum Curve {
 
 impl Curve {
     fn check(&self, key: &Key, checks: &mut Checks) {
-        let before = checks.problems.len();
+        let (key, before) = (&key.name(self.name()), checks.problems.len());
         match self {
             Self::Line { point, direction } => {
                 checks.finite(key.name("point"), point, Unit::Metre);
@@ -216,8 +219,9 @@ impl Curve {
 /// at = { vertices = [0] }
 /// hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } }, side = "outside" } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[checked]
 pub enum Surface {
     /// A plane.
     Plane {
@@ -246,7 +250,7 @@ pub enum Surface {
 
 impl Surface {
     fn check(&self, key: &Key, checks: &mut Checks) {
-        let before = checks.problems.len();
+        let (key, before) = (&key.name(self.name()), checks.problems.len());
         match self {
             Self::Plane { point, normal } => {
                 checks.finite(key.name("point"), point, Unit::Metre);
@@ -278,7 +282,7 @@ impl Surface {
 }
 
 /// On which side of a surface vertices may be.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum SurfaceSide {
     /// On the surface.
@@ -303,35 +307,17 @@ impl Support {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        self.at.check(&key.name("at"), checks);
-        let hold = key.name("hold");
         match &self.hold {
-            Hold::Pin | Hold::Clamp => {}
-            Hold::MovingPin(motion) => motion.check(&hold.name("moving_pin"), checks),
-            Hold::Follow { sequence, .. } => {
-                sequence.check(&hold.name("follow.sequence"), checks);
-                if self.from.is_some() {
-                    let message = "a support that follows a mesh in motion cannot be taken up in the course of a run";
-                    let remedy = "leave `from` out, or follow the mesh from the start; `until` may release it";
-                    checks.report(key.name("from"), message, remedy);
-                }
+            Hold::Follow { .. } if self.from.is_some() => {
+                let message = "a support that follows a mesh in motion cannot be taken up in the course of a run";
+                let remedy =
+                    "leave `from` out, or follow the mesh from the start; `until` may release it";
+                checks.report(key.name("from"), message, remedy);
             }
-            Hold::MovingClamp(motion) => motion.check(&hold.name("moving_clamp"), checks),
-            Hold::SlidingClamp { direction, motion } => {
-                let key = hold.name("sliding_clamp");
-                motion.check(&key.name("motion"), checks);
-                checks.direction(key.name("direction"), direction);
+            Hold::SlidingClamp { direction, .. } => {
+                checks.direction(key.name("hold.sliding_clamp.direction"), direction);
             }
-            Hold::Curve { shape, motion } => {
-                let key = hold.name("curve");
-                motion.check(&key.name("motion"), checks);
-                shape.check(&key.name("shape").name(shape.name()), checks);
-            }
-            Hold::Surface { shape, motion, .. } => {
-                let key = hold.name("surface");
-                motion.check(&key.name("motion"), checks);
-                shape.check(&key.name("shape").name(shape.name()), checks);
-            }
+            _ => {}
         }
     }
 }
@@ -354,40 +340,10 @@ impl Hold {
         matches!(self, Self::Pin | Self::Clamp)
     }
 
-    /// Where its motion is below the key of the support, if it has one.
-    pub(super) fn motion_place(&self) -> Option<&'static str> {
-        match self {
-            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
-            Self::MovingPin(_) => Some("hold.moving_pin"),
-            Self::MovingClamp(_) => Some("hold.moving_clamp"),
-            Self::SlidingClamp { .. } => Some("hold.sliding_clamp.motion"),
-            Self::Curve { .. } => Some("hold.curve.motion"),
-            Self::Surface { .. } => Some("hold.surface.motion"),
-        }
-    }
-
-    /// Its motion, if it has one.
-    pub(super) fn motion_mut(&mut self) -> Option<&mut Motion> {
-        match self {
-            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
-            Self::MovingPin(motion)
-            | Self::MovingClamp(motion)
-            | Self::SlidingClamp { motion, .. }
-            | Self::Curve { motion, .. }
-            | Self::Surface { motion, .. } => Some(motion),
-        }
-    }
-
     /// Its motion, if it has one.
     fn motion(&self) -> Option<&Motion> {
-        match self {
-            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
-            Self::MovingPin(motion)
-            | Self::MovingClamp(motion)
-            | Self::SlidingClamp { motion, .. }
-            | Self::Curve { motion, .. }
-            | Self::Surface { motion, .. } => Some(motion),
-        }
+        let found = all(self, Key::root()).pop();
+        found.map(|(_, motion)| motion)
     }
 
     /// Where vertices are while its motion is zero, of positions `x` (`3V`, metres) at time `t`, seconds.

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::measure::Measure;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_mesh::wording::given;
@@ -23,7 +24,7 @@ use std::fmt;
 /// at = { vertices = [4] }
 /// until = { force = 2.0 }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
 pub enum When {
     /// At a time, seconds.
@@ -44,7 +45,7 @@ pub enum When {
 /// at = { vertices = [0] }
 /// until = { measure = { name = "height", above = 0.1 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Condition {
     /// The force that it carries itself has reached so many newtons: of a support the sum over its vertices, of a
@@ -66,7 +67,7 @@ pub enum Condition {
 /// at = { vertices = [0] }
 /// until = { measure = { name = "tip", below = -0.02 } }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Threshold {
     /// The name of the measure.

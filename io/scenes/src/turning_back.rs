@@ -1,6 +1,8 @@
 //! Functions of time that change faster than the steps of a run, at whose ends alone they are taken.
 
-use crate::{Checks, Course, Interpolation, Key, KeyPart, Motion, Moved, Poses, Profile, Scene};
+use crate::{
+    Checks, Course, Function, Interpolation, Key, KeyPart, Motion, Moved, Poses, Profile, Scene,
+};
 use isosheet_mesh::wording::brief;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::PI;
@@ -22,16 +24,15 @@ impl Scene {
         if !(h.is_finite() && h > 0.0) {
             return;
         }
-        let mut scene = self.clone();
         let mut groups: Vec<Group> = Vec::new();
-        for (key, function) in scene.functions_mut() {
-            let function = (key, function.clone());
+        for Function { key, profile, .. } in self.functions() {
+            let function = (key, profile.clone());
             match groups.last_mut() {
                 Some(group) if are_components(&group[0].0, &function.0) => group.push(function),
                 _ => groups.push(vec![function]),
             }
         }
-        let mut angles = Vec::new();
+        let (mut scene, mut angles) = (self.clone(), Vec::new());
         for Moved { key, motion, .. } in scene.motions_mut() {
             groups.extend(motion.poses.as_ref().map(|poses| positions(&key, poses)));
             angles.extend(angle(&key, motion));

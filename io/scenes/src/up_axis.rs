@@ -1,6 +1,7 @@
 //! Which axis of a file points upwards.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use isosheet_formats::says_up;
 use schemars::JsonSchema;
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// The axis of a file that points upwards.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum UpAxis {
     /// z: coordinates are used as they are.

@@ -1,6 +1,7 @@
 //! Weights that are fixed to vertices.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::selection::Selection;
 use super::unit::Unit;
@@ -15,8 +16,9 @@ use serde::{Deserialize, Serialize};
 /// at = { nearest = [[0.2, 0.0, 0.0]] }
 /// mass = 0.005
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct Weight {
     /// The name of the sheet, if there are several and not the vertices of all are meant.
     #[serde(default)]
@@ -29,7 +31,6 @@ pub struct Weight {
 
 impl Weight {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        self.at.check(&key.name("at"), checks);
         checks.positive(key.name("mass"), self.mass, Unit::Kilogram);
     }
 }

@@ -1,6 +1,7 @@
 //! When sheets and creases yield.
 
 use super::key::Key;
+use super::part::Part;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_dynamics::Yield;
@@ -18,8 +19,9 @@ use serde::{Deserialize, Serialize};
 /// material = "aluminium sheet"
 /// yield = {}
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
+#[checked]
 pub struct SheetYield {
     /// Moment at which a metre of the sheet yields, N m per m: `s h^2 / 4` where the material yields at the
     /// stress `s` and is `h` thick. If left out, that of the material.
@@ -62,8 +64,9 @@ fn check_layers(key: &Key, layers: usize, checks: &mut Checks) {
 /// stiffness = 0.02
 /// yield = { moment = 0.01, hardening = 0.002 }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
+#[checked]
 pub struct CreaseYield {
     /// Moment at which a metre of the crease yields, N (newton metres per metre): `stiffness` times the angle
     /// in radians from which it springs back.

@@ -3,6 +3,7 @@
 use super::builder::{Builder, at};
 use crate::error::SceneError;
 use crate::key::Key;
+use crate::part::all;
 use crate::placed::PlacedSheet;
 use crate::pose::Motion;
 use crate::problem::Problem;
@@ -22,7 +23,8 @@ impl Builder<'_> {
             let key = Key::root().name("support").entry(k);
             let name = support.sheet.as_deref();
             let mut vertices = self.sheets.vertices(name, &support.at, &key)?;
-            let moved = support.hold.motion_place().map(|place| key.name(place));
+            let motions = all::<Motion>(&support.hold, key.name("hold")).into_iter();
+            let moved = motions.map(|(at, _)| at.key).next();
             let moved = moved.unwrap_or_else(|| key.name("hold"));
             if let Some(motion) = support.hold.clamp_motion() {
                 let slides = matches!(support.hold, Hold::SlidingClamp { .. });
