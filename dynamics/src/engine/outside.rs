@@ -5,6 +5,7 @@ use crate::report::step_error::{StepError, StepOutcome, StepTotals};
 pub use crate::step::reaction::{Balance, ForceTime, supports};
 use crate::{Memories, Reaction, SheetModel, State};
 use std::any::Any;
+use std::sync::Arc;
 
 /// What moves a sheet in a [`Simulation`](crate::Simulation) that is made by
 /// [`Simulation::with_engine`](crate::Simulation::with_engine), such as motion in system coordinates. The simulation keeps the
@@ -14,7 +15,7 @@ pub trait Engine: Any + Send {
     fn name(&self) -> &'static str;
 
     /// The model.
-    fn model(&self) -> &SheetModel;
+    fn model(&self) -> &Arc<SheetModel>;
 
     /// Time, positions and velocities.
     fn state(&self) -> &State;

@@ -20,6 +20,7 @@ use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepContro
 use isosheet_mesh::VertexId;
 use std::any::Any;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A simulation: model, state, integrator, step control and energy balance.
 ///
@@ -444,8 +445,8 @@ impl Simulation {
         }
     }
 
-    /// The model.
-    pub fn model(&self) -> &SheetModel {
+    /// The model, which may be kept when the simulation is gone.
+    pub fn model(&self) -> &Arc<SheetModel> {
         match &self.engine {
             Moved::ByMethod(engine) => &engine.model,
             Moved::ByEngine(engine) => engine.model(),

@@ -17,13 +17,17 @@ use super::key::Key;
 use super::measure::Measurable;
 use super::placed::PlacedSheet;
 use super::placed_bodies::Surface;
+use super::setup::Facts;
 use super::step_path::check_step;
 use super::switches::Switches;
 use super::{Gauge, Measure, Scene, Setup};
 use builder::Builder;
 pub use builder::Kept;
 use isosheet_collide::{Contacts, Obstacle};
+use isosheet_dynamics::contact::SurfacePoints;
+use isosheet_mesh::VertexId;
 use std::path::Path;
+use std::sync::Arc;
 
 impl Scene {
     /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
@@ -79,16 +83,24 @@ impl Scene {
         let mut measures: Vec<Gauge> = measures.collect::<Result<_, _>>()?;
         let of_gas = |(name, gas): &(String, _)| Gauge::of_gas(name, gas);
         measures.extend(builder.gases.iter().flat_map(of_gas));
-        let setup = builder.finish(contacts, obstacles);
+        let setup = builder.finish(contacts, obstacles, measures);
         check_step(self, &setup.model, setup.sheet.area(), &setup.start.v)?;
-        Ok(Setup { measures, ..setup })
+        Ok(setup)
     }
 }
 
 impl Builder<'_> {
-    fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
+    fn finish(
+        mut self,
+        contacts: Option<Contacts>,
+        obstacles: Vec<Obstacle>,
+        measures: Vec<Gauge>,
+    ) -> Setup {
         let start = self.start();
         let model = self.model.take();
+        let model = model
+            .expect("a change that fails ends the building")
+            .with_breaks(self.scene.breaks());
         let sheets = &self.sheets.list;
         let part = |sheet: &PlacedSheet<'_>| {
             let name = sheet.of.name.clone();
@@ -116,29 +128,38 @@ impl Builder<'_> {
         if let Some(of_edges) = &mut fold_assignments {
             of_edges.resize(sheet.topology().edge_count(), None);
         }
-        Setup {
-            start,
-            parts,
-            material: materials_in_words(sheets),
+        let bodies = self.bodies.carried();
+        let carriers: Vec<VertexId> = bodies.iter().flat_map(|body| body.vertices).collect();
+        let mut pins = model.pins();
+        pins.retain(|v| !carriers.contains(v) && !self.origins.is_driven(*v));
+        let material = materials_in_words(sheets);
+        let facts = Facts {
+            mass: model.mass().total(),
+            start: SurfacePoints::placed(points.as_ref(), &start.x).into_owned(),
             sheet,
             points,
-            bodies: self.bodies.carried(),
-            model: model
-                .expect("a change that fails ends the building")
-                .with_breaks(self.scene.breaks()),
-            contacts,
+            parts,
+            bodies,
             obstacles,
-            integration: self.scene.method.build(),
             modelled: self.modelled,
             targets: self.targets,
-            measures: Vec::new(),
-            creased: self.creased,
-            bonds: self.bonds,
-            switches: self.switches.clone(),
-            led: self.led.into_list(),
-            fold_assignments,
-            of_sheets,
+            measures,
             origins: self.origins,
+            bonds: self.bonds,
+            led: self.led.into_list(),
+            pins,
+            creased: self.creased,
+            fold_assignments,
+        };
+        Setup {
+            facts: Arc::new(facts),
+            start,
+            model,
+            contacts,
+            integration: self.scene.method.build(),
+            material,
+            of_sheets,
+            switches: self.switches.clone(),
             text: None,
         }
     }

@@ -14,16 +14,16 @@ use super::profile::{Change, Course};
 use super::sheets::sheet_key;
 use super::under_way::UnderWay;
 use super::{
-    Body, BodyLoad, CarriedBody, FramePose, Method, Motion, Problem, Profile, Scene, SceneError,
-    SceneFile, SceneFileError, Setup,
+    Body, BodyLoad, CarriedBody, Facts, FramePose, Method, Motion, Problem, Profile, Scene,
+    SceneError, SceneFile, SceneFileError, Setup,
 };
-use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_files::DataError;
 use isosheet_formats::EventRow;
-use isosheet_mesh::{Advice, Part, Sheet, VertexId};
+use isosheet_mesh::{Advice, VertexId};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A simulation together with the scene that it is made of. Between two steps the scene can be changed.
@@ -157,6 +157,11 @@ impl LiveScene {
         &self.file
     }
 
+    /// What is known of the scene: the sheet, its parts, bodies and obstacles.
+    pub fn facts(&self) -> &Facts {
+        &self.under_way.facts
+    }
+
     /// The simulation with what is known of its scene.
     pub fn under_way(&self) -> &UnderWay {
         &self.under_way
@@ -172,14 +177,14 @@ impl LiveScene {
         &self.under_way.simulation
     }
 
-    /// Positions of the vertices of [`LiveScene::sheet`], metres (`3V`).
+    /// Positions of the vertices of [`Facts::sheet`], metres (`3V`).
     pub fn positions(&self) -> Cow<'_, [f64]> {
         self.under_way
             .facts
             .shown(&self.under_way.simulation.state().x)
     }
 
-    /// The bend of the faces beside each crease of [`LiveScene::sheet`], radians, 0 at other edges
+    /// The bend of the faces beside each crease of [`Facts::sheet`], radians, 0 at other edges
     /// ([`Simulation::bends_at_creases`]); empty where no crease is in a sheet that bends.
     pub fn crease_bends(&self) -> Vec<f64> {
         let bends = self.under_way.simulation.bends_at_creases();
@@ -221,17 +226,14 @@ impl LiveScene {
 
     /// The pinned vertices of sheets, at rest or in motion.
     pub fn pins(&self) -> Vec<VertexId> {
-        let bodies = self.under_way.facts.bodies.iter();
+        let UnderWay {
+            facts, simulation, ..
+        } = &self.under_way;
+        let bodies = facts.bodies.iter();
         let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
-        let mut pins = self.under_way.simulation.model().pins();
-        let origins = &self.under_way.facts.origins;
-        pins.retain(|v| !carriers.contains(v) && !origins.is_driven(*v));
+        let mut pins = simulation.model().pins();
+        pins.retain(|v| !carriers.contains(v) && !facts.origins.is_driven(*v));
         pins
-    }
-
-    /// The bodies that respond, in the order of the scene.
-    pub fn bodies(&self) -> &[CarriedBody] {
-        &self.under_way.facts.bodies
     }
 
     /// What touches bodies, does to each of them at the end of the last step.
@@ -247,36 +249,11 @@ impl LiveScene {
         loads.collect()
     }
 
-    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
-    pub fn sheet(&self) -> &Sheet {
-        &self.under_way.facts.sheet
-    }
-
-    /// Of several sheets and bodies the name of each, and where it is in their union.
-    pub fn parts(&self) -> &[(String, Part)] {
-        &self.under_way.facts.parts
-    }
-
-    /// The obstacles that do not deform, in the order of the scene.
-    pub fn obstacles(&self) -> &[Obstacle] {
-        &self.under_way.facts.obstacles
-    }
-
-    /// What one of these is called.
-    pub fn obstacle_called(&self, k: usize) -> String {
-        self.under_way.facts.origins.obstacle_called(k)
-    }
-
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene.
     pub fn obstacle_loads(&self) -> Vec<BodyLoad> {
         self.under_way
             .facts
             .obstacle_loads(&self.under_way.simulation)
-    }
-
-    /// What is modelled, in words.
-    pub fn modelled(&self) -> &[String] {
-        &self.under_way.facts.modelled
     }
 
     /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
@@ -447,8 +424,8 @@ impl LiveScene {
     /// Goes on with the simulation of a scene and with a hand from the present state.
     fn rebuild(&mut self, scene: &Scene, hand: Option<Hand>) -> Result<(), SceneError> {
         let mut setup = scene.build_switched(&mut self.kept, &self.under_way.switches)?;
-        let facts = setup.facts();
-        let before = (self.file.scene(), &self.under_way.facts);
+        let facts = Arc::clone(&setup.facts);
+        let before = (self.file.scene(), &*self.under_way.facts);
         SceneError::of(jumps(
             before,
             (scene, &facts),

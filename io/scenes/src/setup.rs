@@ -20,7 +20,8 @@ use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::ops::Range;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
 
 /// What is known of a scene besides its simulation.
 #[derive(Clone, Debug)]
@@ -37,7 +38,8 @@ pub struct Facts {
     pub start: Vec<f64>,
     /// The bodies that respond, in the order of the scene.
     pub bodies: Vec<CarriedBody>,
-    pub(crate) obstacles: Vec<Obstacle>,
+    /// The obstacles that do not deform, in the order of the scene.
+    pub obstacles: Vec<Obstacle>,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
     /// The angles that creases are driven to.
@@ -50,10 +52,13 @@ pub struct Facts {
     pub(crate) bonds: Vec<Option<Bond>>,
     /// The motions that a program leads.
     pub(crate) led: Vec<LedMotion>,
-    /// Vertices of the model that are pinned.
+    /// Vertices of sheets that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
     /// The edges of the sheets that have creases.
     pub creased: Vec<EdgeId>,
+    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
+    /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
+    pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
 }
 
 impl Facts {
@@ -110,6 +115,25 @@ impl Facts {
 }
 
 impl Facts {
+    /// Where sheets fold: the mountains and valleys of patterns, and creases whose angles change.
+    pub fn creases(&self) -> Vec<EdgeId> {
+        let folds = |a: &Option<FoldAssignment>| {
+            matches!(a, Some(FoldAssignment::Mountain | FoldAssignment::Valley))
+        };
+        let of_pattern = self.fold_assignments.iter().flatten().enumerate();
+        let of_pattern = of_pattern.filter(|(_, a)| folds(a));
+        let of_pattern = of_pattern.map(|(e, _)| EdgeId::from_index(e));
+        let driven = self.targets.creases.iter().flat_map(|crease| &crease.edges);
+        let driven = driven.map(|(e, _)| *e);
+        let folded = self
+            .targets
+            .folding
+            .iter()
+            .flat_map(|targets| &targets.creases);
+        let all = of_pattern.chain(driven).chain(folded.map(|(e, _)| *e));
+        all.collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques about the
     /// origins of the frames of those that do not deform, and about the origin of space of the others.
     pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<BodyLoad> {
@@ -140,96 +164,38 @@ impl Facts {
     }
 }
 
-/// Everything that a simulation is made of.
+/// Everything that a simulation is made of: what is known of its scene, and what begins to move.
 #[derive(Debug)]
 pub struct Setup {
-    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
-    pub sheet: Sheet,
-    /// The vertices of `sheet` as the model carries them, in scenes with bodies; otherwise they are those of the
-    /// model.
-    pub points: Option<SurfacePoints>,
-    /// Of several sheets and bodies the name of each, and where it is in the union.
-    pub parts: Vec<(String, Part)>,
+    /// What is known of the scene, which stays known while the simulation goes on. A setup has its fields.
+    pub facts: Arc<Facts>,
     /// The state at the start.
     pub start: State,
     /// What moves.
     pub model: SheetModel,
     /// What it meets, in scenes with contact.
     pub contacts: Option<Contacts>,
-    /// The bodies that respond, in the order of the scene.
-    pub bodies: Vec<CarriedBody>,
-    /// The obstacles, in the order of the scene.
-    pub obstacles: Vec<Obstacle>,
     /// How the motion is computed.
     pub integration: Integration,
-    /// What is modelled, in words.
-    pub modelled: Vec<String>,
     /// What the sheet is made of, in words, if the scene names it.
     pub material: Option<String>,
-    /// What the sheet is asked to reach.
-    pub targets: Targets,
-    /// What is read off the sheet at each step.
-    pub measures: Vec<Gauge>,
-    /// The edges of the sheets that have creases.
-    pub creased: Vec<EdgeId>,
-    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
-    /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
-    pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// What to know of the sheets before the scene is run.
     pub(crate) of_sheets: Vec<Warning>,
-    /// Which entry of the scene made what.
-    pub origins: Origins,
-    /// The seams of the scene that hold, in its order.
-    pub(crate) bonds: Vec<Option<Bond>>,
     /// What holds.
     pub(crate) switches: Switches,
-    /// The motions that a program leads.
-    pub(crate) led: Vec<LedMotion>,
     /// The text of the scene, if it is a file.
     pub(crate) text: Option<SceneText>,
 }
 
+impl Deref for Setup {
+    type Target = Facts;
+
+    fn deref(&self) -> &Facts {
+        &self.facts
+    }
+}
+
 impl Setup {
-    /// Where sheets fold: the mountains and valleys of patterns, and creases whose angles change.
-    pub fn creases(&self) -> Vec<EdgeId> {
-        let folds = |a: &Option<FoldAssignment>| {
-            matches!(a, Some(FoldAssignment::Mountain | FoldAssignment::Valley))
-        };
-        let of_pattern = self.fold_assignments.iter().flatten().enumerate();
-        let of_pattern = of_pattern.filter(|(_, a)| folds(a));
-        let of_pattern = of_pattern.map(|(e, _)| EdgeId::from_index(e));
-        let driven = self.targets.creases.iter().flat_map(|crease| &crease.edges);
-        let driven = driven.map(|(e, _)| *e);
-        let folded = self
-            .targets
-            .folding
-            .iter()
-            .flat_map(|targets| &targets.creases);
-        let all = of_pattern.chain(driven).chain(folded.map(|(e, _)| *e));
-        all.collect::<BTreeSet<_>>().into_iter().collect()
-    }
-
-    /// What is known of the scene besides the simulation.
-    pub fn facts(&self) -> Facts {
-        Facts {
-            sheet: self.sheet.clone(),
-            points: self.points.clone(),
-            parts: self.parts.clone(),
-            mass: self.model.mass().total(),
-            start: SurfacePoints::placed(self.points.as_ref(), &self.start.x).into_owned(),
-            bodies: self.bodies.clone(),
-            obstacles: self.obstacles.clone(),
-            modelled: self.modelled.clone(),
-            targets: self.targets.clone(),
-            measures: self.measures.clone(),
-            origins: self.origins.clone(),
-            bonds: self.bonds.clone(),
-            led: self.led.clone(),
-            pins: self.model.pins(),
-            creased: self.creased.clone(),
-        }
-    }
-
     /// The sheets without the bodies beside them, in their rest shape, placed in space.
     pub fn sheets_alone(&self) -> Cow<'_, Sheet> {
         let Some(points) = &self.points else {
@@ -256,29 +222,33 @@ impl Setup {
         self.model.bends_at_creases(t, x, &memories).is_some()
     }
 
+    /// Whether what holds at a checkpoint is what holds here.
+    pub fn is_at(&self, checkpoint: &Checkpoint) -> bool {
+        checkpoint.note() == self.switches.note()
+    }
+
     /// The simulation at the start.
     ///
     /// # Errors
     /// [`SceneError`] at the place of the scene that is to blame.
     pub fn start(self) -> Result<Simulation, SceneError> {
         let Self {
-            sheet,
+            facts,
             model,
             start,
             contacts,
             integration,
-            origins,
             switches,
             text,
             ..
         } = self;
-        let place = |e: SimulationError| placed(origins.of_start(&e), text.as_ref());
+        let place = |e: SimulationError| placed(facts.origins.of_start(&e), text.as_ref());
         let simulation = match integration {
             Integration::Free { method, control } => {
                 Simulation::new(model, start, method).and_then(|s| s.with_control(control))
             }
             Integration::InChart(settings) => {
-                let chart = settings.build(&sheet, &model.pins(), &start.x);
+                let chart = settings.build(&facts.sheet, &model.pins(), &start.x);
                 let chart = chart.map_err(|e| no_chart(&e, text.as_ref()))?;
                 isosheet_charts::in_chart(model, start, chart, settings.options())
             }
@@ -316,19 +286,19 @@ impl Setup {
         checkpoint: Checkpoint,
         problem: fn(&Origins, &SimulationError) -> Problem,
     ) -> Result<Simulation, SceneError> {
-        if checkpoint.note() != self.switches.note() {
+        if !self.is_at(&checkpoint) {
             return Err(placed(other_switches(), self.text.as_ref()));
         }
         let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
         let resumed = match self.integration {
             Integration::Free { .. } => Simulation::resume(self.model, contact, checkpoint),
             Integration::InChart(settings) => {
-                let chart = settings.build(&self.sheet, &self.model.pins(), &self.start.x);
+                let chart = settings.build(&self.facts.sheet, &self.model.pins(), &self.start.x);
                 let chart = chart.map_err(|e| no_chart(&e, self.text.as_ref()))?;
                 isosheet_charts::resume_in_chart(self.model, chart, checkpoint)
             }
         };
-        resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
+        resumed.map_err(|e| placed(problem(&self.facts.origins, &e), self.text.as_ref()))
     }
 }
 

@@ -1,10 +1,12 @@
 //! The forces of the supports of a scene.
 
 use super::Origins;
+use super::setup::Facts;
 use isosheet_dynamics::{Reaction, Simulation, Support};
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, Vector3};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// How the forces of a simulation are those of the supports of its scene.
 ///
@@ -14,9 +16,9 @@ use std::collections::HashMap;
 /// the shares `w` of a support obey `sum (w_i - w_j) / l_ij = 0` at each such vertex i, are one at the
 /// vertices of this support and zero at those of the others. On a straight line of rods this is the law of
 /// the lever. The shares of all supports add up to one, so that the forces balance the weight.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SupportForces {
-    origins: Origins,
+    facts: Arc<Facts>,
     /// The vertices of each support.
     vertices: Vec<Vec<VertexId>>,
     /// The shares of the supports at each vertex that is kept in place.
@@ -24,12 +26,13 @@ pub struct SupportForces {
 }
 
 impl SupportForces {
-    /// For the first `count` supports of a scene.
-    pub fn new(origins: Origins, simulation: &Simulation, count: usize) -> Self {
-        let shares = shares(&origins, simulation, count).unwrap_or_default();
+    /// The forces of the first `count` supports of a scene.
+    pub fn new(facts: Arc<Facts>, simulation: &Simulation, count: usize) -> Self {
+        let origins = &facts.origins;
+        let shares = shares(origins, simulation, count).unwrap_or_default();
         Self {
             vertices: origins.vertices(simulation.model(), count),
-            origins,
+            facts,
             shares,
         }
     }
@@ -50,7 +53,7 @@ impl SupportForces {
         let means: Vec<Vector3<f64>> = means.collect();
         let mut loads = vec![[Vector3::zeros(); 2]; self.vertices.len()];
         for Reaction { support, force } in simulation.reactions() {
-            match (self.origins.support(support), support) {
+            match (self.facts.origins.support(support), support) {
                 (Some(number), _) if number < loads.len() => {
                     let [sum, torque] = &mut loads[number];
                     *sum += force;
@@ -66,7 +69,7 @@ impl SupportForces {
                 _ => {}
             }
         }
-        let clamps = self.origins.clamps.iter();
+        let clamps = self.facts.origins.clamps.iter();
         for (number, moment) in clamps.zip(simulation.clamp_moments()) {
             if let Some([_, torque]) = loads.get_mut(*number) {
                 *torque += Vector3::from(moment);

@@ -9,11 +9,12 @@ use isosheet_dynamics::{Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_formats::EventRow;
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A simulation between two steps, with what is known of its scene as it is held now.
 pub struct UnderWay {
     /// What is known of its scene.
-    pub facts: Facts,
+    pub facts: Arc<Facts>,
     pub(crate) switches: Switches,
     /// The forces of the supports.
     pub supports: SupportForces,
@@ -30,7 +31,7 @@ impl UnderWay {
         setup: Setup,
         begin: impl FnOnce(Setup) -> Result<Simulation, SceneError>,
     ) -> Result<Self, SceneError> {
-        let (facts, switches) = (setup.facts(), setup.switches.clone());
+        let (facts, switches) = (Arc::clone(&setup.facts), setup.switches.clone());
         Ok(Self::new(scene, facts, switches, begin(setup)?))
     }
 
@@ -41,13 +42,13 @@ impl UnderWay {
 
     pub(crate) fn new(
         scene: &Scene,
-        facts: Facts,
+        facts: Arc<Facts>,
         switches: Switches,
         simulation: Simulation,
     ) -> Self {
         let count = scene.support.len();
         Self {
-            supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+            supports: SupportForces::new(Arc::clone(&facts), &simulation, count),
             facts,
             switches,
             simulation,
@@ -87,24 +88,23 @@ impl UnderWay {
             return Ok(events);
         }
         let mut setup = scene.build_switched(kept, &switches)?;
-        let facts = setup.facts();
         if let Some(hand) = hand {
             setup.model = setup.model.with_hand(hand.clone());
         }
         let Setup {
+            facts,
             model,
             contacts,
-            origins,
             ..
         } = setup;
         let contact = contacts.map(|c| Box::new(c) as Box<dyn Contact>);
         let before = self.support_forces();
         self.simulation
             .hold_by(model, contact)
-            .map_err(|e| not_taken_up(&events, &e, origins.of_change(&e)))?;
+            .map_err(|e| not_taken_up(&events, &e, facts.origins.of_change(&e)))?;
         self.simulation.set_note(switches.note());
         let count = scene.support.len();
-        self.supports = SupportForces::new(facts.origins.clone(), &self.simulation, count);
+        self.supports = SupportForces::new(Arc::clone(&facts), &self.simulation, count);
         (self.facts, self.switches, self.before) = (facts, switches, Some(before));
         Ok(events)
     }
