@@ -3,7 +3,8 @@
 #[path = "../tests/scene/all_keys.rs"]
 mod all_keys;
 
-use super::{Key, KeyPart, SceneFile, schema};
+use crate::text::schema::schema;
+use crate::{Key, KeyPart, SceneFile};
 use all_keys::ALL_KEYS;
 use serde_json::Value;
 use std::collections::BTreeSet;
