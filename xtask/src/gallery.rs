@@ -171,7 +171,13 @@ mod tests {
         let store = Store::open(folder.path(), "gallery", effort, remake).unwrap();
         let gallery = Gallery::read().unwrap();
         for shown in &gallery.picture {
-            let bodies = shown.scene(&store).unwrap().setup().unwrap().obstacles;
+            let bodies = shown
+                .scene(&store)
+                .unwrap()
+                .setup()
+                .unwrap()
+                .obstacles
+                .clone();
             for body in shown.bodies.iter().flatten() {
                 assert!(*body < bodies.len(), "{}: {body}", shown.scene);
             }

@@ -9,6 +9,7 @@ use isosheet_dynamics::{
 };
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The name of the engine in checkpoints.
 const NAME: &str = "a chart";
@@ -114,7 +115,7 @@ impl Engine for ChartEngine {
         NAME
     }
 
-    fn model(&self) -> &SheetModel {
+    fn model(&self) -> &Arc<SheetModel> {
         self.simulation.mechanics().model()
     }
 

@@ -5,6 +5,7 @@ use isosheet_coords::{Chart, Linearised, RodSystem};
 use isosheet_dynamics::Memories;
 use isosheet_dynamics::SheetModel;
 use isosheet_mesh::VertexId;
+use std::sync::Arc;
 
 /// Which terms of the equations of motion are kept, and what happens to the momenta.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -26,7 +27,7 @@ pub enum Equations {
 ///
 /// Call [`ChartMechanics::at`] first; the other methods refer to the state given there.
 pub struct ChartMechanics {
-    model: SheetModel,
+    model: Arc<SheetModel>,
     /// What the potentials remember.
     memories: Memories,
     system: RodSystem,
@@ -103,7 +104,7 @@ impl ChartMechanics {
         };
         Ok(Self {
             memories: model.memories(),
-            model,
+            model: Arc::new(model),
             system,
             chart,
             linear,
@@ -125,7 +126,7 @@ impl ChartMechanics {
 
     /// The model.
     #[must_use]
-    pub fn model(&self) -> &SheetModel {
+    pub fn model(&self) -> &Arc<SheetModel> {
         &self.model
     }
 

@@ -7,6 +7,7 @@ use crate::{Memories, Reaction, SheetModel, State};
 use isosheet_model::StepError;
 pub use isosheet_model::{AdvisedError, EngineError};
 use std::any::Any;
+use std::sync::Arc;
 
 /// What moves a sheet in a [`Simulation`](crate::Simulation) that is made by
 /// [`Simulation::with_engine`](crate::Simulation::with_engine), such as motion in system coordinates. The
@@ -17,7 +18,7 @@ pub trait Engine: Any + Send {
     fn name(&self) -> &'static str;
 
     /// The model.
-    fn model(&self) -> &SheetModel;
+    fn model(&self) -> &Arc<SheetModel>;
 
     /// Time, positions and velocities.
     fn state(&self) -> &State;

@@ -22,6 +22,7 @@ use isosheet_model::StepError;
 use isosheet_model::TraceEvent;
 use std::any::Any;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A simulation: model, state, integrator, step control and energy balance.
 ///
@@ -452,8 +453,8 @@ impl Simulation {
         }
     }
 
-    /// The model.
-    pub fn model(&self) -> &SheetModel {
+    /// The model, which may be kept when the simulation is gone.
+    pub fn model(&self) -> &Arc<SheetModel> {
         match &self.engine {
             Moved::ByMethod(engine) => &engine.model,
             Moved::ByEngine(engine) => engine.model(),

@@ -310,7 +310,12 @@ impl<'a> Film<'a> {
             colours: colours.as_ref(),
             ground: self.ground,
         };
-        let picture = render_folded(&picture, &self.recording.creases, &self.camera, &self.look)?;
+        let picture = render_folded(
+            &picture,
+            &self.recording.creases(),
+            &self.camera,
+            &self.look,
+        )?;
         Ok(match &self.strip {
             Some(strip) => picture.above(strip),
             None => picture,

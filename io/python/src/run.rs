@@ -334,7 +334,7 @@ impl Run {
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
-        for series in run::measure_series(&self.recording.measures, &self.recording.gauges) {
+        for series in run::measure_series(&self.recording.measures, &self.recording.facts.measures) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
         Ok(columns)
@@ -398,7 +398,7 @@ impl Run {
             };
             units.set_item(name, unit)?;
         }
-        for gauge in &self.recording.gauges {
+        for gauge in &self.recording.facts.measures {
             units.set_item(&gauge.name, gauge.unit())?;
         }
         Ok(units)

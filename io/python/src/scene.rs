@@ -141,7 +141,7 @@ impl Scene {
         file.map(Self::of).map_err(|e| of_file(py, &e))
     }
 
-    /// The same scene with other values: ``scene.edit({"obstacle[0].friction": 0.8})``.
+    /// The scene with other values: ``scene.edit({"obstacle[0].friction": 0.8})``.
     fn edit(&self, py: Python<'_>, edits: &Bound<'_, PyDict>) -> PyResult<Self> {
         let text = self.file.text();
         let file = SceneFile::parse(text.text.clone(), &text.path, &self::edits(edits)?);

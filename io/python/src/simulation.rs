@@ -92,16 +92,16 @@ impl Simulation {
     /// The page of the present state.
     fn replay(&self, py: Python<'_>) -> PyResult<Replay> {
         let replay = self.with(py, |live| -> Result<Replay, DataError> {
-            let mut trajectory = Trajectory::new(live.sheet());
+            let mut trajectory = Trajectory::new(&live.facts().sheet);
             trajectory.push(live.simulation().state().t, &live.positions())?;
-            let parts = live.parts().iter();
+            let parts = live.facts().parts.iter();
             Ok(Replay {
                 title: "simulation".into(),
                 sheets: parts.map(|(_, part)| part.faces.len()).collect(),
                 pins: live.pins().iter().map(|v| v.0).collect(),
-                summary: vec![("modelled".into(), live.modelled().join(", "))],
+                summary: vec![("modelled".into(), live.facts().modelled.join(", "))],
                 scene: live.file().text().text.clone(),
-                ..replay_of(live.sheet(), live.obstacles(), &trajectory, &[])?
+                ..replay_of(&live.facts().sheet, &live.facts().obstacles, &trajectory, &[])?
             })
         });
         replay.map_err(|e| plain(py, &e))
@@ -377,14 +377,14 @@ impl Simulation {
     /// What is modelled, in words.
     #[getter]
     fn modelled(&self, py: Python<'_>) -> Vec<String> {
-        self.with(py, |live| live.modelled().to_vec())
+        self.with(py, |live| live.facts().modelled.to_vec())
     }
 
     /// Of several sheets the vertices of each by its name, as slices:
     /// ``simulation.x[simulation.sheets["top"]]``. Empty for one sheet.
     #[getter]
     fn sheets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        slices(py, &self.with(py, |live| live.parts().to_vec()))
+        slices(py, &self.with(py, |live| live.facts().parts.to_vec()))
     }
 
     /// Time, seconds.
@@ -408,19 +408,19 @@ impl Simulation {
     /// Corners of the triangles, of shape (F, 3).
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        rows(py, &self.with(py, |live| live.sheet().face_indices()))
+        rows(py, &self.with(py, |live| live.facts().sheet.face_indices()))
     }
 
     /// Ends of the edges, of shape (E, 2).
     #[getter]
     fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        rows(py, &self.with(py, |live| edges(live.sheet())))
+        rows(py, &self.with(py, |live| edges(&live.facts().sheet)))
     }
 
     /// Rest lengths of the edges, metres, of shape (E,).
     #[getter]
     fn rest_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, &self.with(py, |live| live.sheet().lengths().to_vec()))
+        array(py, &self.with(py, |live| live.facts().sheet.lengths().to_vec()))
     }
 
     /// Masses of the vertices, kg, of shape (V,); zero of those of rigid bodies.
@@ -480,7 +480,7 @@ impl Simulation {
     fn body_centres<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let centres = self.with(py, |live| {
             let x = &live.simulation().state().x;
-            let bodies = live.bodies().iter();
+            let bodies = live.facts().bodies.iter();
             bodies.map(|body| body.centre(x)).collect::<Vec<[f64; 3]>>()
         });
         rows(py, &centres)

@@ -110,7 +110,7 @@ pub(crate) fn edits(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Vec<
     dict.iter().map(edit).collect()
 }
 
-/// The same as texts `key=value`.
+/// The edits of a dictionary as texts `key=value`.
 pub(crate) fn edits_as_texts(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Vec<String>> {
     Ok(edits(dict, further)?.iter().map(Edit::to_string).collect())
 }

@@ -71,7 +71,7 @@ impl FoldVerdict {
     pub fn of(recording: &Recording) -> Option<Self> {
         let last = recording.trajectory.len().checked_sub(1);
         let x = last.and_then(|k| recording.trajectory.frame(k));
-        let (Some(targets), Some(x)) = (recording.folding.as_ref(), x) else {
+        let (Some(targets), Some(x)) = (recording.targets.folding.as_ref(), x) else {
             return None;
         };
         let topology = recording.sheet.topology();

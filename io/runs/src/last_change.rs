@@ -1,6 +1,6 @@
 //! Until when something prescribed changes.
 
-use isosheet_scenes::{Course, Moved, Profile, Scene};
+use isosheet_scenes::{Course, Function, Moved, Profile, Scene};
 
 /// Until when the functions of time and the poses of a scene change, seconds, or zero. Sines, which have no end, do not
 /// count.
@@ -8,8 +8,8 @@ pub(super) fn last_change(scene: &Scene) -> f64 {
     let mut scene = scene.clone();
     let folded = scene.folding.iter().map(|folding| folding.time);
     let mut last = folded.fold(0.0, f64::max);
-    for (_, function) in scene.functions_mut() {
-        last = last.max(end(function));
+    for Function { profile, .. } in scene.functions() {
+        last = last.max(end(profile));
     }
     for Moved { motion, .. } in scene.motions_mut() {
         let poses = motion.poses.iter().flat_map(|poses| &poses.keys);

@@ -54,6 +54,7 @@ mod intervention;
 mod last_change;
 mod page;
 mod passing;
+mod plan;
 mod recorder;
 mod recording;
 mod replay;
@@ -109,22 +110,24 @@ pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use checkpoint::{RunProgress, StepsBy};
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
-use frames::{FrameShape, StoredFrames};
+use frames::StoredFrames;
 use isosheet_files::{FileError, read_json, write_json};
 use isosheet_formats::{Motion, MotionError, Row, Trajectory, frame_path, write_obj};
 use isosheet_page::PageOptions;
 use isosheet_scenes::{Kept, SceneFile, Setup, UnderWay};
 use page::write_page_of;
+use plan::{AtStart, Plan, Rows};
 use recording::RunFrames;
 pub use row::row_of_start;
 use rulings::RuledFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
-use stepping::{Plan, Stepping};
+use stepping::Stepping;
 use steps::step_count;
-use writer::{Rows, RunWriter};
+use writer::RunWriter;
 
 /// How a call of [`simulate`] ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -228,6 +231,14 @@ impl From<Outcome> for Ended {
     }
 }
 
+/// How far a run has begun whose folder is not known yet.
+enum Begun {
+    /// Its scene is built.
+    Built(Box<Setup>),
+    /// It can start.
+    Started(Box<UnderWay>),
+}
+
 fn simulate_in(
     file: &SceneFile,
     folder: &Path,
@@ -252,20 +263,21 @@ fn simulate_in(
     let plan = Plan {
         file,
         hash,
-        facts: setup.facts(),
-        shape: FrameShape::of(&setup),
+        start: AtStart::of(&setup),
         rows: match file.scene().output.page || wanted == Wanted::Recording {
             true => Rows::InMemory,
             false => Rows::InFiles,
         },
+        steps_by: StepsBy::Scene,
     };
+    let facts = &plan.start.facts;
     // A scene that cannot start leaves the folder as it was.
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
-    let start = match continued {
-        true => None,
+    let begun = match continued {
+        true => Begun::Built(Box::new(setup)),
         false => {
             estimate.check(file, folder)?;
-            Some(started(file, setup)?)
+            Begun::Started(Box::new(started(file, setup)?))
         }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
@@ -288,22 +300,25 @@ fn simulate_in(
             (open, Some(saved))
         }
     };
-    let (under_way, saved) = match (saved, start) {
-        (Some((progress, checkpoint)), _) => {
-            let setup = file.build_at_with(&mut kept, &checkpoint)?;
+    let (under_way, saved) = match (saved, begun) {
+        (Some((progress, checkpoint)), begun) => {
+            let setup = match begun {
+                Begun::Built(setup) if setup.is_at(&checkpoint) => *setup,
+                _ => file.build_at_with(&mut kept, &checkpoint)?,
+            };
             let resume = |setup: Setup| setup.resume(checkpoint);
             let under_way = UnderWay::begin(file.scene(), setup, resume)?;
             (under_way, Some(progress))
         }
-        (None, Some(under_way)) => (under_way, None),
-        (None, None) => (started(file, file.build_with(&mut kept)?)?, None),
+        (None, Begun::Started(under_way)) => (*under_way, None),
+        (None, Begun::Built(setup)) => (started(file, *setup)?, None),
     };
     let mut stepping = Stepping::begin(&plan, &open, &mut kept, under_way, saved, clock)?;
     watch.begin(&Beginning {
         steps: stepping.writer.progress.steps,
         of: step_count(file.scene()),
-        modelled: plan.facts.modelled.clone(),
-        vertices: plan.facts.sheet.topology().vertex_count(),
+        modelled: facts.modelled.clone(),
+        vertices: facts.sheet.topology().vertex_count(),
         warnings,
     });
     if let Some(sink) = watch.trace() {
@@ -318,13 +333,17 @@ fn simulate_in(
     } else {
         advanced?;
     }
+    let Stepping {
+        writer, under_way, ..
+    } = stepping;
     let RunWriter {
         progress, tables, ..
-    } = stepping.writer;
+    } = writer;
     let recorded = match (progress.ending.is_some(), tables) {
         (true, Some(tables)) => {
-            let setup = file.build_with(&mut kept)?;
-            Some(Recording::of(folder, material.stored, setup, tables))
+            let model = Arc::clone(under_way.simulation.model());
+            let built = (plan.start.clone(), model);
+            Some(Recording::of(folder, material.stored, built, tables))
         }
         _ => None,
     };
@@ -357,7 +376,7 @@ fn advance(
 
 /// Writes the frames of a run as a trajectory; as many as its summary says at `least`, if it is complete.
 fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(), RunError> {
-    let trajectory = Trajectory::new(&plan.facts.sheet);
+    let trajectory = Trajectory::new(&plan.start.facts.sheet);
     let path = folder.path(RunFolder::TRAJECTORY);
     let frames = StoredFrames {
         least,
@@ -365,7 +384,7 @@ fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(
     };
     let scene = plan.file.scene();
     let ruled = match scene.output.curvature {
-        true => RuledFrames::new(&frames, &plan.facts, scene.sheet.len()),
+        true => RuledFrames::new(&frames, &plan.start.facts, scene.sheet.len()),
         false => None,
     };
     let written = match ruled {
@@ -381,7 +400,7 @@ fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(
 fn stored_frames(folder: &RunFolder, plan: &Plan<'_>) -> StoredFrames {
     StoredFrames {
         path: folder.path(RunFolder::FRAMES),
-        shape: plan.shape,
+        shape: plan.start.shape,
         least: 0,
     }
 }
@@ -443,7 +462,7 @@ fn finish(
         return Ok(Outcome::Interrupted.into());
     };
     let clock = Instant::now();
-    let facts = &plan.facts;
+    let facts = &plan.start.facts;
     let topology = facts.sheet.topology();
     let output = &plan.file.scene().output;
     if output.obj {
@@ -497,7 +516,7 @@ fn finish(
 /// Writes the frames as OBJ files.
 fn write_obj_files(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> {
     let obj = folder.path(RunFolder::OBJ);
-    let (topology, mut done) = (plan.facts.sheet.topology(), Ok(()));
+    let (topology, mut done) = (plan.start.facts.sheet.topology(), Ok(()));
     stored_frames(folder, plan).each(&mut |frame| {
         done = write_obj(&frame_path(&obj, frame.number), topology, frame.x);
         match done {

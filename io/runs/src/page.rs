@@ -34,7 +34,7 @@ impl Recording {
     /// The fields of the page.
     pub(super) fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
-        let folding = self.folding.as_ref();
+        let folding = self.targets.folding.as_ref();
         let open = folding.map(|targets| FrameField::open(&self.sheet, targets));
         let mut fields: Vec<_> = open.into_iter().collect();
         fields.extend(FrameField::all(
@@ -69,10 +69,11 @@ impl Recording {
         replay.bodies.extend(held);
         replay
             .series
-            .extend(measure_series(&self.measures, &self.gauges));
+            .extend(measure_series(&self.measures, &self.facts.measures));
         Replay {
             // How far creases are from their angles, unless they have reached them.
             colour: self
+                .targets
                 .folding
                 .as_ref()
                 .filter(|_| !self.is_folded())
@@ -110,7 +111,7 @@ impl Recording {
         match &self.summary {
             Some(summary) => {
                 rows.of_summary(summary, self.scene.scene());
-                rows.of_gauges(summary, &self.gauges);
+                rows.of_gauges(summary, &self.facts.measures);
             }
             None => {
                 let t = self.history.last().map_or(0.0, |row| row.t);

@@ -5,21 +5,22 @@ use super::control::Control;
 use super::folder::{Existing, FolderState, RunFolder, RunInputs, SceneHash, stored_scene};
 use super::frames::FrameShape;
 use super::intervention::note;
+use super::plan::{AtStart, Plan, Rows};
 use super::recording::Recording;
 use super::row::row_of_start;
-use super::stepping::Plan;
 use super::steps::{ROUND_OFF, step_length};
 use super::summary::{EndReason, Ending};
-use super::writer::{Rows, RunWriter, Subject};
+use super::writer::RunWriter;
 use super::{RunError, finish, write_trajectory};
 use isosheet_dynamics::{StepProgress, StepReport};
 use isosheet_files::{FileError, write_atomically};
 use isosheet_formats::{EventRow, FrameQuantity, Row};
 use isosheet_mesh::Advice;
-use isosheet_scenes::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
+use isosheet_scenes::{FailedStep, Files, Key, LiveScene, Scene, SceneFile, UnderWay};
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
@@ -184,20 +185,18 @@ impl Recorder {
             }
         };
         let begun = stored_scene(open.root())?;
-        let setup = begun.build()?;
-        let shape = FrameShape::of(&setup);
         let under_way = live.under_way();
         let start = row_of_start(&under_way.simulation).check_finite();
         start.map_err(FileError::from)?;
-        let subject = Subject {
-            scene: begun.scene(),
+        let plan = Plan {
+            file: &begun,
             hash: material.hash,
-            facts: &under_way.facts,
-            shape,
+            start: AtStart::of(&begun.build()?),
             rows: Rows::InMemory,
             steps_by: StepsBy::Program,
         };
-        let mut writer = RunWriter::begin(&subject, &open, under_way, None, clock)?;
+        let mut writer = RunWriter::begin(&plan, &open, under_way, None, clock)?;
+        let shape = plan.start.shape;
         let reached = under_way.simulation.state().t;
         if reached > 0.0 {
             note(&mut writer.progress.control, UNRECORDED, reached, false);
@@ -415,13 +414,16 @@ impl Recorder {
             self.writer.progress.steps_by = StepsBy::Scene;
         }
         self.writer.save(&live.simulation().checkpoint())?;
-        let mut kept = Kept::in_folder(file.folder());
+        let setup = file.build()?;
         let plan = Plan {
             file: &file,
             hash: self.hash,
-            facts: file.build_with(&mut kept)?.facts(),
-            shape: self.shape,
+            start: AtStart {
+                shape: self.shape,
+                ..AtStart::of(&setup)
+            },
             rows: Rows::InMemory,
+            steps_by: StepsBy::Program,
         };
         if file.scene().output.trajectory {
             write_trajectory(&self.folder, &plan, 0)?;
@@ -429,8 +431,8 @@ impl Recorder {
         let RunWriter {
             progress, tables, ..
         } = self.writer;
-        let setup = file.build_with(&mut kept)?;
-        let recorded = Recording::of(&root, file.clone(), setup, tables.unwrap_or_default());
+        let built = (plan.start.clone(), Arc::new(setup.model));
+        let recorded = Recording::of(&root, file.clone(), built, tables.unwrap_or_default());
         let ended = finish(&plan, &self.folder, &progress, Some(recorded))?;
         match ended.recorded {
             Some((mut recording, frames)) => {

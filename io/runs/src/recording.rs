@@ -2,22 +2,23 @@
 
 use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames, check_whole};
+use super::plan::AtStart;
 use super::series_body::series_body;
 use super::{RunError, Summary};
 use isosheet_collide::Obstacle;
-use isosheet_dynamics::{SheetModel, immobile_vertices};
+use isosheet_dynamics::SheetModel;
 use isosheet_files::{FileError, read_json};
 use isosheet_formats::{
     EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
     Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history, read_loads,
     read_measures,
 };
-use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
-use isosheet_scenes::{FoldTargets, Gauge, Origins, SceneFile, Setup};
+use isosheet_mesh::{Sheet, VertexId};
+use isosheet_scenes::{Facts, SceneFile};
 use nalgebra::{Isometry3, Vector3};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Deref, DerefMut};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What a run recorded: everything that a page or a film of it needs.
 #[derive(Debug)]
@@ -26,30 +27,12 @@ pub struct Recording {
     pub name: String,
     /// The scene as it was run.
     pub scene: SceneFile,
-    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
-    pub sheet: Sheet,
-    /// Of several sheets and bodies the name of each, and where it is in their union.
-    pub parts: Vec<(String, Part)>,
-    /// What is modelled, in words.
-    pub modelled: Vec<String>,
-    /// What each edge of the sheet is meant to do, see [`Setup::fold_assignments`].
-    pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
-    /// Where the sheet folds: mountains and valleys of a pattern, and creases whose angles change.
-    pub creases: Vec<EdgeId>,
-    /// The edges of the sheets that have creases.
-    pub(crate) creased: Vec<EdgeId>,
-    /// Vertices that are pinned, at rest or in motion.
-    pub pins: Vec<VertexId>,
-    /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
+    /// What is known of the scene at its start. A recording has its fields.
+    pub facts: Arc<Facts>,
+    /// Vertices of sheets that rods to pins keep in place ([`immobile_vertices`](isosheet_dynamics::immobile_vertices)).
     pub immobile: Vec<VertexId>,
-    /// The model at its start.
-    pub(crate) model: SheetModel,
-    /// Where the scene folds creases to.
-    pub(crate) folding: Option<FoldTargets>,
-    /// The obstacles that do not deform, in the order of the scene.
-    pub obstacles: Vec<Obstacle>,
-    /// Which entry of the scene made what.
-    pub(crate) origins: Origins,
+    /// The model.
+    pub(crate) model: Arc<SheetModel>,
     /// How many numbers a frame has.
     pub(crate) shape: FrameShape,
     /// The frames with the mesh.
@@ -58,14 +41,26 @@ pub struct Recording {
     pub history: Vec<HistoryRow>,
     /// The loads of supports and obstacles at the end of each step.
     pub loads: Vec<LoadRow>,
-    /// What is read off the sheets at each step.
-    pub gauges: Vec<Gauge>,
     /// What the measures of the scene show at the start and at the end of each step.
     pub measures: Vec<MeasureRow>,
     /// What was taken up and released.
     pub events: Vec<EventRow>,
     /// What came of the run, if it is complete.
     pub summary: Option<Summary>,
+}
+
+impl Deref for Recording {
+    type Target = Facts;
+
+    fn deref(&self) -> &Facts {
+        &self.facts
+    }
+}
+
+impl DerefMut for Recording {
+    fn deref_mut(&mut self) -> &mut Facts {
+        Arc::make_mut(&mut self.facts)
+    }
 }
 
 impl Recording {
@@ -100,7 +95,9 @@ impl Recording {
         let setup = scene.build()?;
         let summary = folder.join(RunFolder::SUMMARY);
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
-        let (mut recording, mut frames) = Self::of(folder, scene, setup, Tables::read(folder)?);
+        let (start, model) = (AtStart::of(&setup), Arc::new(setup.model));
+        let tables = Tables::read(folder)?;
+        let (mut recording, mut frames) = Self::of(folder, scene, (start, model), tables);
         recording.summary = summary;
         if let (Some(summary), RunFrames::Stored(stored)) = (&recording.summary, &mut frames) {
             let history = folder.join(RunFolder::HISTORY);
@@ -119,16 +116,16 @@ impl Recording {
     pub(crate) fn of(
         folder: &Path,
         scene: SceneFile,
-        setup: Setup,
+        (start, model): (AtStart, Arc<SheetModel>),
         tables: Tables,
     ) -> (Self, RunFrames) {
+        let AtStart {
+            facts,
+            shape,
+            immobile,
+        } = start;
         let path = folder.join(RunFolder::FRAMES);
-        let shape = FrameShape::of(&setup).in_file(&path);
-        let bodies: Vec<VertexId> = setup.bodies.iter().flat_map(|body| body.vertices).collect();
-        let of_sheets = |mut vertices: Vec<VertexId>| {
-            vertices.retain(|v| !bodies.contains(v) && !setup.origins.is_driven(*v));
-            vertices
-        };
+        let shape = shape.in_file(&path);
         let frames = RunFrames::Stored(StoredFrames {
             path,
             shape,
@@ -136,26 +133,16 @@ impl Recording {
         });
         let recording = Self {
             name: name_of(folder),
-            creases: setup.creases(),
-            creased: setup.creased.clone(),
-            immobile: of_sheets(immobile_vertices(&setup.model, &setup.start.x)),
-            pins: of_sheets(setup.model.pins()),
-            model: setup.model,
-            parts: setup.parts,
-            modelled: setup.modelled,
-            fold_assignments: setup.fold_assignments,
-            trajectory: Trajectory::new(&setup.sheet),
+            scene,
+            trajectory: Trajectory::new(&facts.sheet),
+            facts,
+            immobile,
+            model,
             shape,
-            sheet: setup.sheet,
-            folding: setup.targets.folding,
-            obstacles: setup.obstacles,
-            origins: setup.origins,
             history: tables.history,
             loads: tables.loads,
-            gauges: setup.measures,
             measures: tables.measures,
             events: tables.events,
-            scene,
             summary: None,
         };
         (recording, frames)
@@ -163,9 +150,11 @@ impl Recording {
 
     /// Leaves the sheets alone: without obstacles, and without bodies and meshes in motion, which are parts of the mesh.
     pub fn leave_out_bodies(&mut self) {
-        self.obstacles.clear();
-        self.parts.truncate(self.scene.scene().sheet.len());
-        let Some((_, last)) = self.parts.last() else {
+        let count = self.scene.scene().sheet.len();
+        let facts = Arc::make_mut(&mut self.facts);
+        facts.obstacles.clear();
+        facts.parts.truncate(count);
+        let Some((_, last)) = facts.parts.last() else {
             return;
         };
         let counts = MeshCounts {
@@ -173,18 +162,18 @@ impl Recording {
             edges: last.edges.end,
             faces: last.faces.end,
         };
-        let faces = &self.sheet.topology().faces()[..counts.faces];
+        let faces = &facts.sheet.topology().faces()[..counts.faces];
         let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| v.0)).collect();
-        let positions = self.sheet.positions()[..3 * counts.vertices].to_vec();
+        let positions = facts.sheet.positions()[..3 * counts.vertices].to_vec();
         if let Ok(sheets) = Sheet::new(positions, &faces) {
-            self.sheet = sheets;
+            facts.sheet = sheets;
             self.trajectory = self.trajectory.of_first(counts);
-            if let Some(assignments) = &mut self.fold_assignments {
+            if let Some(assignments) = &mut facts.fold_assignments {
                 assignments.truncate(counts.edges);
             }
         }
-        if self.parts.len() == 1 {
-            self.parts.clear();
+        if facts.parts.len() == 1 {
+            facts.parts.clear();
         }
     }
 

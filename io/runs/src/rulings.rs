@@ -33,15 +33,8 @@ struct Curvatures<'a> {
 }
 
 impl<'a> Curvatures<'a> {
-    /// Of the sheets of a run.
-    fn of(recording: &'a Recording) -> Option<Self> {
-        let count = recording.scene.scene().sheet.len();
-        let held = (&recording.pins[..], &recording.creased[..]);
-        Self::new(&recording.sheet, &recording.parts, count, held)
-    }
-
-    /// Of the sheets of a run on its way.
-    fn of_facts(facts: &'a Facts, count: usize) -> Option<Self> {
+    /// Of the sheets of a run, so many.
+    fn of(facts: &'a Facts, count: usize) -> Option<Self> {
         let held = (&facts.pins[..], &facts.creased[..]);
         Self::new(&facts.sheet, &facts.parts, count, held)
     }
@@ -100,7 +93,7 @@ pub(super) struct RuledFrames<'a, M> {
 impl<'a, M> RuledFrames<'a, M> {
     /// Of the frames of a run with so many sheets.
     pub(super) fn new(frames: &'a M, facts: &'a Facts, sheets: usize) -> Option<Self> {
-        let curvatures = Curvatures::of_facts(facts, sheets)?;
+        let curvatures = Curvatures::of(facts, sheets)?;
         Some(Self { frames, curvatures })
     }
 }
@@ -128,9 +121,14 @@ impl<M: Motion> Motion for RuledFrames<'_, M> {
 }
 
 impl Recording {
+    /// How its sheets are curved.
+    fn curvatures_of_sheets(&self) -> Option<Curvatures<'_>> {
+        Curvatures::of(&self.facts, self.scene.scene().sheet.len())
+    }
+
     /// The rulings of all frames, which are made of their positions; nothing if no curvatures can be fitted.
     pub fn rulings(&self) -> Option<RecordedRulings> {
-        let of = Curvatures::of(self)?;
+        let of = self.curvatures_of_sheets()?;
         let mut all = RecordedRulings::default();
         for x in (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k)) {
             let [directions, curvatures] = of.rulings(x);
@@ -184,11 +182,11 @@ impl Recording {
         };
         [
             FrameField::new(across, move |frame| {
-                let known = known.get_or_init(|| Curvatures::of(self)).as_ref();
+                let known = known.get_or_init(|| self.curvatures_of_sheets()).as_ref();
                 known.map_or_else(|| vec![0.0; faces], |own| own.rulings(frame.x)[1].clone())
             }),
             FrameField::new(gauss, move |frame| {
-                let known = same.get_or_init(|| Curvatures::of(self)).as_ref();
+                let known = same.get_or_init(|| self.curvatures_of_sheets()).as_ref();
                 known.map_or_else(|| vec![0.0; vertices], |own| own.gauss(frame.x))
             }),
         ]

@@ -1,25 +1,16 @@
 //! The steps of a run and what is recorded of them.
 
 use super::balance::ForceBalance;
-use super::checkpoint::{RunProgress, StepsBy};
-use super::folder::{RunFolder, SceneHash};
-use super::frames::FrameShape;
+use super::checkpoint::RunProgress;
+use super::folder::RunFolder;
+use super::plan::Plan;
 use super::steps::{step_count, step_length};
-use super::writer::{Rows, RunWriter, Subject};
+use super::writer::RunWriter;
 use super::{RunError, StepPart, Tick, Watch};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{StepError, StepProgress};
-use isosheet_scenes::{Facts, Kept, SceneError, SceneFile, UnderWay, check_positions};
+use isosheet_scenes::{Kept, SceneError, UnderWay, check_positions};
 use std::time::Instant;
-
-/// What is known of a run before its first step.
-pub(crate) struct Plan<'a> {
-    pub(crate) file: &'a SceneFile,
-    pub(crate) hash: SceneHash,
-    pub(crate) facts: Facts,
-    pub(crate) shape: FrameShape,
-    pub(crate) rows: Rows,
-}
 
 /// A run between two steps.
 pub(crate) struct Stepping<'a> {
@@ -39,15 +30,7 @@ impl<'a> Stepping<'a> {
         saved: Option<RunProgress>,
         clock: Instant,
     ) -> Result<Self, RunError> {
-        let subject = Subject {
-            scene: plan.file.scene(),
-            hash: plan.hash,
-            facts: &plan.facts,
-            shape: plan.shape,
-            rows: plan.rows,
-            steps_by: StepsBy::Scene,
-        };
-        let writer = RunWriter::begin(&subject, folder, &under_way, saved, clock)?;
+        let writer = RunWriter::begin(plan, folder, &under_way, saved, clock)?;
         Ok(Self {
             plan,
             kept,

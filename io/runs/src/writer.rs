@@ -2,14 +2,15 @@
 
 use super::RunError;
 use super::balance::ForceBalance;
-use super::checkpoint::{self, RunProgress, StepsBy};
+use super::checkpoint::{self, RunProgress};
 use super::commit;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
-use super::folder::{RunFolder, SceneHash};
-use super::frames::{FrameFile, FrameShape};
+use super::folder::RunFolder;
+use super::frames::FrameFile;
 use super::incidence::Incidence;
 use super::last_change::last_change;
+use super::plan::{Plan, Rows};
 use super::recording::Tables;
 use super::row::{row_of_start, row_of_step};
 use super::steps::step_count;
@@ -20,19 +21,10 @@ use isosheet_formats::{
     EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
     MeasureRow, MeasureWriter,
 };
-use isosheet_scenes::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
+use isosheet_scenes::{CarriedBody, FollowedFolds, Integrator, Scene, UnderWay};
 use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::time::Instant;
-
-/// Where the rows of the tables of a run are, while it goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rows {
-    /// In its files.
-    InFiles,
-    /// In its files, and in memory for what is made of them at the end.
-    InMemory,
-}
 
 /// The files that a run writes as it goes on, and how far it has come.
 pub(crate) struct RunWriter {
@@ -55,33 +47,16 @@ pub(crate) struct RunWriter {
     last_change: f64,
 }
 
-/// What is recorded.
-pub(super) struct Subject<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) hash: SceneHash,
-    pub(super) facts: &'a Facts,
-    pub(super) shape: FrameShape,
-    pub(super) rows: Rows,
-    pub(super) steps_by: StepsBy,
-}
-
 impl RunWriter {
     /// The files of a run at its start, or after `saved` steps, of which its folder has them.
     pub(super) fn begin(
-        subject: &Subject<'_>,
+        plan: &Plan<'_>,
         folder: &RunFolder,
         under_way: &UnderWay,
         saved: Option<RunProgress>,
         clock: Instant,
     ) -> Result<Self, RunError> {
-        let &Subject {
-            scene,
-            hash,
-            facts,
-            shape,
-            rows,
-            steps_by,
-        } = subject;
+        let (scene, facts) = (plan.file.scene(), &plan.start.facts);
         let bears_loads =
             !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
         let path = |name| folder.path(name);
@@ -94,7 +69,7 @@ impl RunWriter {
         ]
         .map(path);
         let is_new = saved.is_none();
-        let keeps = rows == Rows::InMemory;
+        let keeps = plan.rows == Rows::InMemory;
         let (history, loads, measures, events, frames) = match &saved {
             None => (
                 HistoryWriter::create(&history)?,
@@ -123,7 +98,7 @@ impl RunWriter {
                     .events
                     .map(|of| EventWriter::resume(&events, of))
                     .transpose()?,
-                FrameFile::resume(&frames, saved.frames, shape)?,
+                FrameFile::resume(&frames, saved.frames, plan.start.shape)?,
             ),
         };
         // The files have been cut back to the checkpoint.
@@ -139,10 +114,10 @@ impl RunWriter {
             events,
             frames,
             progress: saved.unwrap_or_else(|| RunProgress {
-                scene: hash.to_string(),
+                scene: plan.hash.to_string(),
                 version: env!("CARGO_PKG_VERSION").into(),
                 commit: commit::noted(),
-                steps_by,
+                steps_by: plan.steps_by,
                 ..RunProgress::default()
             }),
             checkpoint: folder.path(RunFolder::CHECKPOINT),

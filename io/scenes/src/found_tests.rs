@@ -3,7 +3,8 @@
 #[path = "../tests/scene/all_keys.rs"]
 mod all_keys;
 
-use super::{Key, KeyPart, SceneFile, schema};
+use crate::text::schema::schema;
+use crate::{Key, KeyPart, SceneFile};
 use all_keys::ALL_KEYS;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -90,9 +91,8 @@ fn found(found: impl Fn(&SceneFile) -> Vec<Key>) -> BTreeSet<String> {
 #[test]
 fn every_function_of_time_is_found() {
     let known = found(|file| {
-        let mut scene = file.scene().clone();
-        let functions = scene.functions_mut().into_iter();
-        functions.map(|(key, _)| key).collect()
+        let functions = file.scene().functions().into_iter();
+        functions.map(|function| function.key).collect()
     });
     // A rotation is found with the motion that it belongs to.
     let mut all = keys_of("Profile");

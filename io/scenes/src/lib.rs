@@ -27,180 +27,109 @@
 //! # }
 //! ```
 
-mod air;
-mod attached_flow;
 mod bodies;
-mod bond;
-mod build;
-mod carried;
-mod changed;
-mod chart;
-mod contact;
-mod courses;
-mod creases;
-mod curl;
-mod direction;
-mod drawing;
-mod driven;
-mod driven_into;
-mod driven_surface;
-mod edit;
-mod enclosed;
-mod engine_problem;
-mod error;
-mod fold_group;
-mod fold_scene;
-mod folding;
-mod follower_loads;
-mod forces;
-mod foreign;
-mod form;
+mod building;
 #[cfg(test)]
 mod found_tests;
-mod friction;
-mod functions;
-mod glue;
-mod guides;
-mod in_words;
-mod integration;
-mod jump;
-mod key;
-mod kinks;
-mod led;
-mod live;
-mod material;
-mod measure;
-mod mesh;
-mod mesh_file;
-mod method;
-mod named_file;
-mod obstacle_names;
-mod obstacles;
-mod outline;
-mod output;
-mod patch;
-mod patched;
-mod pattern;
-mod periods;
-mod placed;
-mod placed_bodies;
-mod plain_name;
-mod pose;
-mod poses;
-mod problem;
-mod profile;
-mod refined;
-mod resolution;
-mod round_bodies;
-mod schema;
-mod selection;
-mod selections;
-mod sequence;
-mod setup;
-mod sheet;
+mod holding;
+mod loads;
+mod measures;
+mod meshes;
+mod methods;
+mod placing;
+mod running;
 mod sheets;
-mod size;
-mod slots;
-mod source;
-mod start;
-mod starting_point;
-mod step_path;
-mod stop;
-mod support_forces;
-mod supports;
-mod switch;
-mod switches;
-mod targets;
-mod toml_problem;
-mod too_fast;
-mod turning_back;
-mod under_way;
-mod unit;
-mod up_axis;
-mod warning;
-mod warnings;
-mod weight;
-mod yields;
+mod text;
+mod time;
+mod whole;
+mod words;
 
-pub use air::Air;
-pub use attached_flow::AttachedFlow;
-pub use bodies::Body;
-pub use carried::{BodyLoad, CarriedBody};
-pub use chart::{
+pub use bodies::body::Body;
+pub use bodies::carried::{BodyLoad, CarriedBody};
+pub use bodies::friction::{Friction, FrictionCoefficients};
+pub use bodies::guides::{BodyForce, BodyTorque, Guide};
+pub use bodies::obstacles::{Obstacle, Shape, Wall};
+pub use building::engine_problem::Origins;
+pub use building::setup::Setup;
+pub use building::support_forces::{SupportForces, SupportLoad};
+pub use holding::contact::{Contact, SheetPair};
+pub use holding::glue::{Glue, SeamBend, SeamSide};
+pub use holding::supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
+pub use holding::switch::{Condition, Threshold, When};
+pub use loads::air::Air;
+pub use loads::attached_flow::AttachedFlow;
+pub use loads::follower_loads::{Gas, Moment, Pressure};
+pub use loads::forces::{Acceleration, Forces, Frame, Load};
+pub use measures::measure::{Gauge, Measure, Quantity};
+pub use measures::targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
+pub use meshes::direction::{Direction, TextureAxis, TextureDirection};
+pub use meshes::drawing::DrawingFile;
+pub use meshes::mesh::{Diagonals, Mesh};
+pub use meshes::mesh_file::{MeshFile, PolygonFaces};
+pub use meshes::outline::{Outline, OutlineShape};
+pub use meshes::pattern::{
+    AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+};
+pub use meshes::selection::Selection;
+pub use meshes::sequence::{MeshFrames, Outside, Sequence};
+pub use meshes::up_axis::UpAxis;
+pub use methods::chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
     Substep,
 };
-pub use contact::{Contact, SheetPair};
-pub use creases::{Crease, CreaseEdges, PatternEdges};
-pub use curl::Curl;
-pub use direction::{Direction, TextureAxis, TextureDirection};
-pub use drawing::DrawingFile;
-pub use edit::{Edit, EditError};
-pub use engine_problem::Origins;
-pub use error::{Colours, PlacedProblem, SceneError, SceneText};
-pub use fold_group::FoldGroup;
-pub use fold_scene::{FoldScene, Panels, Touch, path_value, two_digits};
-pub use folding::FollowedFolds;
-pub use folding::off_target;
-pub use folding::{FoldResidual, FoldTargets, Folding};
-pub use follower_loads::{Gas, Moment, Pressure};
-pub use forces::{Acceleration, Forces, Frame, Load};
-pub use friction::{Friction, FrictionCoefficients};
-pub use glue::{Glue, SeamBend, SeamSide};
-pub use guides::{BodyForce, BodyTorque, Guide};
-pub use integration::Integration;
-pub use key::{Key, KeyError, KeyPart};
-pub use live::{FailedStep, HoldError, LiveScene, Target};
-pub use material::{Material, Plate};
-pub use measure::{Gauge, Measure, Quantity};
-pub use mesh::{Diagonals, Mesh};
-pub use mesh_file::{MeshFile, PolygonFaces};
-pub use method::{Fallback, Integrator, Method, Taut};
-pub use obstacles::{Obstacle, Shape, Wall};
-pub use outline::{Outline, OutlineShape};
-pub use output::Output;
-pub use patch::Patch;
-pub use pattern::{
-    AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
-};
-pub use pose::{Motion, Pose, Rotation, Turn};
-pub use poses::{FramePose, Poses, TimedPose};
-pub(crate) use problem::Checks;
-pub use problem::Problem;
-pub use profile::{Change, Course, Interpolation, Profile};
-pub use schema::{as_written, documented_schema, schema};
-pub use selection::Selection;
-pub use sequence::{MeshFrames, Outside, Sequence};
-pub use setup::Setup;
-pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
-pub use source::{SceneFile, SceneFileError};
-pub use start::{Spin, Start};
-pub use starting_point::StartingPoint;
-pub use stop::{Rest, Stop};
-pub use support_forces::{SupportForces, SupportLoad};
-pub use supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
-pub use switch::{Condition, Threshold, When};
-pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
-pub use unit::{UnitRange, UsualSize};
-pub use up_axis::UpAxis;
-pub use warning::Warning;
-pub use weight::Weight;
-pub use yields::{CreaseYield, SheetYield};
+pub use methods::integration::Integration;
+pub use methods::method::{Fallback, Integrator, Method, Taut};
+pub use methods::output::Output;
+pub use methods::stop::{Rest, Stop};
+pub use running::live::{FailedStep, HoldError, LiveScene, Target};
+pub use sheets::creases::{Crease, CreaseEdges, PatternEdges};
+pub use sheets::curl::Curl;
+pub use sheets::fold_group::FoldGroup;
+pub use sheets::folding::FollowedFolds;
+pub use sheets::folding::off_target;
+pub use sheets::folding::{FoldResidual, FoldTargets, Folding};
+pub use sheets::material::{Material, Plate};
+pub use sheets::patch::Patch;
+pub use sheets::sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
+pub use sheets::start::{Spin, Start};
+pub use sheets::weight::Weight;
+pub use sheets::yields::{CreaseYield, SheetYield};
+pub use text::fold_scene::{FoldScene, Panels, Touch, path_value, two_digits};
+pub use text::schema::{as_written, documented_schema, schema};
+pub use text::source::{SceneFile, SceneFileError};
+pub use text::starting_point::StartingPoint;
+pub use time::pose::{Motion, Pose, Rotation, Turn};
+pub use time::poses::{FramePose, Poses, TimedPose};
+pub use time::profile::{Change, Course, Interpolation, Profile};
+pub use words::edit::{Edit, EditError};
+pub use words::error::{Colours, PlacedProblem, SceneError, SceneText};
+pub use words::key::{Key, KeyError, KeyPart};
+pub(crate) use words::part::{AnyPart, Part, Place, See, SeeMut};
+pub(crate) use words::problem::Checks;
+pub use words::problem::Problem;
+pub(crate) use words::unit::Unit;
+pub use words::unit::{UnitRange, UsualSize};
+pub use words::warning::Warning;
 
-pub use build::Kept;
-pub use functions::Moved;
-pub use mesh_file::Files;
-pub use named_file::{FileKind, NamedFile};
-pub use resolution::check_positions;
-pub use selection::{bounds, size};
-pub use setup::Facts;
-pub use size::MEMORY_OF_FACE;
-pub use supports::frame_motion;
-pub use under_way::UnderWay;
+pub use building::build::Kept;
+pub use building::setup::Facts;
+pub use holding::supports::frame_motion;
+pub use meshes::mesh_file::Files;
+pub use meshes::selection::{bounds, size};
+pub use running::under_way::UnderWay;
+pub use sheets::size::MEMORY_OF_FACE;
+pub use whole::functions::{Function, Moved};
+pub use whole::named_file::{FileKind, NamedFile};
+pub use words::resolution::check_positions;
 
+use bodies::body;
+use bodies::obstacle_names;
+use measures::measure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use sheets::creases;
+use sheets::several;
+use words::part;
 
 /// The version of the format of scene files.
 pub const VERSION: u32 = 1;
@@ -220,14 +149,14 @@ pub const VERSION: u32 = 1;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the format: 1.
     pub version: u32,
     /// The sheet, or several, each with a name: `[[sheet]]`.
-    #[serde(with = "sheets")]
-    #[schemars(with = "sheets::OneOrSeveral")]
+    #[serde(with = "several")]
+    #[schemars(with = "several::OneOrSeveral")]
     pub sheet: Vec<Sheet>,
     /// Creases with rest angles.
     #[serde(default)]
@@ -323,17 +252,12 @@ impl Scene {
             let message = format!("version {} of scene files is not known", self.version);
             checks.report(root.name("version"), message, "write `version = 1`");
         }
-        sheets::check(&self.sheet, &mut checks);
-        let is_known = |name: &Option<String>, key: &Key, checks: &mut Checks| {
-            sheets::check_reference(&self.sheet, name.as_deref(), &key.name("sheet"), checks);
-        };
-        for (key, crease) in root.name("crease").entries(&self.crease) {
-            crease.check(&key, &mut checks);
-            is_known(&crease.sheet, &key, &mut checks);
-        }
+        several::check(&self.sheet, &mut checks);
+        part::check_all(self, &Place::of(root.clone()), &mut checks);
+        self.check_names(&mut checks);
         if let Some(folding) = &self.folding {
             let key = root.name("folding");
-            match sheets::one_of(&self.sheet, folding.sheet.as_deref(), &key, "the creases") {
+            match several::one_of(&self.sheet, folding.sheet.as_deref(), &key, "the creases") {
                 Ok(k) => folding.check(&self.sheet[k].mesh, &key, &mut checks),
                 Err(problem) => checks.problems.push(problem),
             }
@@ -341,63 +265,22 @@ impl Scene {
         for (key, glue) in root.name("glue").entries(&self.glue) {
             glue.check(&self.sheet, &self.body, &key, &mut checks);
         }
-        for (key, weight) in root.name("weight").entries(&self.weight) {
-            weight.check(&key, &mut checks);
-            is_known(&weight.sheet, &key, &mut checks);
-        }
-        for (key, support) in root.name("support").entries(&self.support) {
-            support.check(&key, &mut checks);
-            is_known(&support.sheet, &key, &mut checks);
-        }
-        for (key, load) in root.name("forces.load").entries(&self.forces.load) {
-            is_known(&load.sheet, &key, &mut checks);
-        }
-        for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
-            obstacle.check(&key, &mut checks);
-        }
         obstacle_names::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
-        bodies::check(&self.body, &self.sheet, &mut checks);
-        self.forces
-            .check(&self.sheet, &root.name("forces"), &mut checks);
-        if let Some(air) = &self.air {
-            air.check(&self.sheet, &root.name("air"), &mut checks);
-        }
+        body::check(&self.body, &self.sheet, &mut checks);
         let contact = root.name("contact");
         self.contact
             .check(&self.body, &self.obstacle, &contact, &mut checks);
-        for (k, pair) in self.contact.pair.iter().enumerate() {
-            let key = root.name("contact.pair").entry(k).name("sheets");
-            for (i, name) in pair.sheets.iter().enumerate() {
-                let key = key.entry(i);
-                let of_sheets = self.sheet.iter().filter_map(|sheet| sheet.name.clone());
-                let of_obstacles = self.obstacle.iter().filter_map(|o| o.name.clone());
-                let known = of_sheets
-                    .chain(bodies::names(&self.body))
-                    .chain(of_obstacles);
-                let known: Vec<String> = known.collect();
-                if !known.contains(name) {
-                    let meant = "sheet, body or obstacle";
-                    let problem = sheets::unknown_name(meant, known.into_iter(), name, &key);
-                    checks.problems.push(problem);
-                }
-            }
-        }
         for (key, measure) in root.name("measure").entries(&self.measure) {
             let of = (&self.crease[..], self.folding.as_ref(), &self.forces);
             measure.check(&key, of, &mut checks);
-            let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
-            bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
-        self.forces.check_names(&root.name("forces"), &mut checks);
         Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
         self.check_steps_resolve(&mut checks);
-        self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;
         self.stop.check(step, &root.name("stop"), &mut checks);
-        self.output.check(&root.name("output"), &mut checks);
         checks
     }
 
@@ -424,7 +307,7 @@ impl Scene {
         if self.method.integrator == Integrator::Chart
             && let Some((number, _)) = others.find(differs)
         {
-            let key = sheets::sheet_key(self.sheet.len(), number).name("damping");
+            let key = several::sheet_key(self.sheet.len(), number).name("damping");
             let message = "a chart damps all sheets alike, and the first one has another rate";
             checks.report(
                 key,
@@ -450,54 +333,6 @@ impl Scene {
     /// Whether contact is modelled.
     pub fn has_contact(&self) -> bool {
         !self.obstacle.is_empty() || !self.body.is_empty() || self.contact.self_contact
-    }
-
-    /// The mesh files that the scene names, in the order of the scene.
-    pub fn files(&self) -> Vec<(Key, PathBuf)> {
-        let mut scene = self.clone();
-        let files = scene.files_mut().into_iter();
-        files.map(|file| (file.key, file.path.clone())).collect()
-    }
-
-    /// The files that the scene names.
-    pub fn files_mut(&mut self) -> Vec<NamedFile<'_>> {
-        let (root, mut files) = (Key::root(), Vec::new());
-        let count = self.sheet.len();
-        for (k, sheet) in self.sheet.iter_mut().enumerate() {
-            let key = sheets::sheet_key(count, k);
-            match &mut sheet.mesh {
-                Mesh::File(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.file"), &mut file.path));
-                }
-                Mesh::Drawing(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.drawing"), &mut file.path));
-                }
-                _ => {}
-            }
-            if let Some(file) = &mut sheet.start.file {
-                files.push(NamedFile::mesh(key.name("start.file"), &mut file.path));
-            }
-            let curl = sheet.curl.as_mut();
-            if let Some(file) = curl.and_then(|curl| curl.shape.as_mut()) {
-                files.push(NamedFile::mesh(key.name("curl.shape"), &mut file.path));
-            }
-        }
-        for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
-            let key = root.name("obstacle").entry(k).name("shape");
-            files.extend(obstacle.shape.file_mut(&key));
-        }
-        for (k, body) in self.body.iter_mut().enumerate() {
-            let key = root.name("body").entry(k).name("shape");
-            files.extend(body.shape.file_mut(&key));
-        }
-        for (k, support) in self.support.iter_mut().enumerate() {
-            if let Hold::Follow { sequence, .. } = &mut support.hold {
-                let key = root.name("support").entry(k).name("hold.follow.sequence");
-                let path = sequence.path.as_mut();
-                files.extend(path.map(|path| NamedFile::motion(key, path)));
-            }
-        }
-        files
     }
 }
 

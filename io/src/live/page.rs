@@ -14,9 +14,9 @@ pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String
     let (simulation, scene) = (live.simulation(), live.file().scene());
     let state = simulation.state();
     let times = [state.t];
-    let obstacles = live.obstacles().iter().enumerate();
+    let obstacles = live.facts().obstacles.iter().enumerate();
     let obstacles = obstacles.map(|(k, body)| {
-        let name = live.obstacle_called(k);
+        let name = live.facts().origins.obstacle_called(k);
         Body::of_obstacle(&name, body, &times)
     });
     let holding = session.holding().iter().map(|body| {
@@ -28,19 +28,20 @@ pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String
     let replay = Replay {
         title: title.into(),
         sheets: live
-            .parts()
+            .facts()
+            .parts
             .iter()
             .map(|(_, part)| part.faces.len())
             .collect(),
-        faces: live.sheet().face_indices(),
-        rest: live.sheet().positions().to_vec(),
+        faces: live.facts().sheet.face_indices(),
+        rest: live.facts().sheet.positions().to_vec(),
         times: times.to_vec(),
         positions: vec![live.positions().into_owned()],
         pins: numbers(&live.pins()),
         immobile: numbers(simulation.immobile_vertices()),
         bodies: obstacles.chain(holding).collect(),
         series: session.plotted(),
-        summary: vec![("modelled".into(), live.modelled().join(", "))],
+        summary: vec![("modelled".into(), live.facts().modelled.join(", "))],
         scene: live.file().text().text.clone(),
         reproduce: format!("isosheet live {file}"),
         ..Replay::default()

@@ -248,7 +248,7 @@ impl Session {
     /// What pages show of the present state, at a pace.
     pub(super) fn frame(&self, pace: Option<f64>) -> LiveFrame<'_> {
         let (state, scene) = (self.live.simulation().state(), self.live.file().scene());
-        let bodies = self.live.obstacles().iter();
+        let bodies = self.live.facts().obstacles.iter();
         let bodies = bodies.map(|body| body.motion().pose(state.t));
         let holding = self.holding.iter().map(|body| body.pose(scene, state.t));
         let numbers = |pose: BodyPose| {

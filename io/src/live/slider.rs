@@ -1,7 +1,7 @@
 //! What of a scene can be changed while it is played: its functions of time.
 
 use isosheet_page::LiveSlider;
-use isosheet_scenes::{Change, Course, Key, Profile, Scene};
+use isosheet_scenes::{Change, Course, Function, Key, Profile, Scene};
 
 /// By how much the wind can be stronger than the scene has it.
 const STRONGER: f64 = 2.0;
@@ -21,17 +21,15 @@ pub(super) struct Slider {
 impl Slider {
     /// The sliders of a scene. What is zero at all times is not named, and has none.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
-        let mut functions = scene.clone();
-        let functions = functions.functions_mut().into_iter();
-        let slider = |(key, profile): (Key, &mut Profile)| {
-            let (name, unit) = Self::called(&key)?;
-            let name = with_names(name, scene);
+        let slider = |function: Function<'_>| {
+            let Function { key, profile, unit } = function;
+            let name = with_names(called(&key)?, scene);
             let reach = if unit == WIND { STRONGER } else { 1.0 };
             let [least, most] = profile.range(scene.stop.time).map(|end| reach * end);
             let [low, high] = [least.min(0.0), most.max(0.0)];
             let shown = LiveSlider {
                 name,
-                unit: unit.into(),
+                unit: as_shown(unit),
                 low,
                 high,
             };
@@ -41,30 +39,10 @@ impl Slider {
                 profile: profile.clone(),
             })
         };
-        functions.filter_map(slider).collect()
-    }
-
-    /// The name and the unit of the function of time at a key; none of one that has no slider.
-    fn called(key: &Key) -> Option<(String, &'static str)> {
-        let text = key.to_string();
-        let owner = text.find(']').map_or("", |end| &text[..=end]);
-        let (above, last) = text.rsplit_once('.')?;
-        Some(match last {
-            "angle" => (format!("angle of {owner}"), "°"),
-            "x" | "y" | "z" => (format!("{owner} along {last}"), "m"),
-            "size" if owner.starts_with("forces.load") => (above.to_owned(), "N"),
-            "size" if owner.starts_with("forces.pressure") => (above.to_owned(), "Pa"),
-            "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
-            "profile" => (above.to_owned(), ""),
-            "swell" | "stiffening" => (text.clone(), ""),
-            "course" => ("part of the folding".to_owned(), ""),
-            "added" => (format!("gas added to {owner}"), "m³"),
-            "size" => (above.to_owned(), "m/s²"),
-            "wind[0]" => ("wind along x".to_owned(), WIND),
-            "wind[1]" => ("wind along y".to_owned(), WIND),
-            "wind[2]" => ("wind along z".to_owned(), WIND),
-            _ => return None,
-        })
+        let mut all: Vec<Self> = scene.functions().into_iter().filter_map(slider).collect();
+        // The wind comes first.
+        all.sort_by_key(|slider| slider.shown.unit != WIND);
+        all
     }
 
     /// The value at time `t`, seconds.
@@ -88,6 +66,32 @@ impl Slider {
             end,
         }));
     }
+}
+
+/// What the slider of the function of time at a key is called; nothing where there is none.
+fn called(key: &Key) -> Option<String> {
+    let text = key.to_string();
+    let owner = text.find(']').map_or("", |end| &text[..=end]);
+    let (above, last) = text.rsplit_once('.')?;
+    Some(match last {
+        "closing" | "rest" => return None,
+        "angle" => format!("angle of {owner}"),
+        "x" | "y" | "z" => format!("{owner} along {last}"),
+        "size" | "profile" => above.to_owned(),
+        "course" => "part of the folding".to_owned(),
+        "added" => format!("gas added to {owner}"),
+        "wind[0]" => "wind along x".to_owned(),
+        "wind[1]" => "wind along y".to_owned(),
+        "wind[2]" => "wind along z".to_owned(),
+        _ => text,
+    })
+}
+
+/// A unit as a page shows it.
+fn as_shown(unit: &str) -> String {
+    unit.replace("degrees", "°")
+        .replace('2', "²")
+        .replace('3', "³")
 }
 
 /// What a slider is called, where a crease has a name by that.

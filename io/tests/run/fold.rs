@@ -198,7 +198,7 @@ fn groups_of_creases_fold_one_after_the_other() {
         .position(|t| *t >= half)
         .unwrap();
     let topology = recording.sheet.topology();
-    let targets = recording.scene.build().unwrap().targets.folding.unwrap();
+    let targets = recording.targets.folding.clone().unwrap();
     let angles = |k: usize| {
         let x = recording.trajectory.frame(k).unwrap();
         let folds = targets.creases.iter();

@@ -39,7 +39,7 @@ fn choose(times: &[f64], wanted: &[f64]) -> Vec<usize> {
 /// # Errors
 /// As [`FigureScene::setup`](crate::runs::FigureScene::setup); a body that cannot be drawn.
 fn shots<'a>(run: &'a Run, frames: &[usize], bodies: &[usize]) -> Result<Vec<Shot<'a>>> {
-    let all = run.scene.setup()?.obstacles;
+    let all = run.scene.setup()?.obstacles.clone();
     let shot = |&k: &usize| {
         let t = run.trajectory.times()[k];
         let solids = bodies.iter().map(|b| Solid::of(&all[*b], t));
@@ -110,7 +110,7 @@ impl View {
         } = run;
         let setup = scene.setup()?;
         let immobile = immobile_vertices(&setup.model, &setup.start.x);
-        let bodies = setup.obstacles;
+        let bodies = &setup.obstacles;
         let quick = effort.quick_or(" --quick", "");
         let replay = Replay {
             title: format!("Figure {figure}: {label}"),
@@ -119,7 +119,7 @@ impl View {
             summary: rows(&run.summary),
             scene: scene.text().to_owned(),
             reproduce: format!("cargo xtask reproduce-figures --figures {figure}{quick}"),
-            ..replay_of(&setup.sheet, &bodies, trajectory, &run.history)?
+            ..replay_of(&setup.sheet, bodies, trajectory, &run.history)?
         };
         let name = format!("fig{figure:02}-{}", scene.name());
         // Where the figure leaves bodies out, they would hide the sheet.

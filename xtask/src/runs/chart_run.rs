@@ -77,7 +77,7 @@ fn start(scene: &FigureScene) -> Result<Result<ChartSimulation, ChartDynamicsErr
     let setup = scene.setup()?;
     let (x, v) = (setup.start.x, setup.start.v);
     Ok(
-        match settings.build(&setup.sheet, &setup.model.pins(), &x) {
+        match settings.build(&setup.facts.sheet, &setup.model.pins(), &x) {
             Ok(chart) => ChartSimulation::new(setup.model, chart, settings.options(), &x, &v),
             Err(error) => Err(error.into()),
         },

@@ -35,7 +35,7 @@ impl Hanging {
             level,
             side,
             pin,
-            sheet: setup.sheet,
+            sheet: setup.facts.sheet.clone(),
         })
     }
 }

@@ -193,7 +193,7 @@ impl Run {
         let summary = RunSummary::new(summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
-            sheet: recorded.sheet,
+            sheet: recorded.facts.sheet.clone(),
             trajectory: recorded.trajectory,
             history: recorded.history,
             loads: recorded.loads,

@@ -187,7 +187,7 @@ impl FigureScene {
     /// # Errors
     /// As [`FigureScene::setup`].
     pub(crate) fn sheet(&self) -> Result<Sheet> {
-        Ok(self.setup()?.sheet)
+        Ok(self.setup()?.sheet.clone())
     }
 }
 

@@ -100,7 +100,7 @@ fn rolled(job: Job) -> Result<Measured> {
                 for _ in 0..count {
                     measured.factorisations += live.step(step)?.factorisations;
                 }
-                let [x, ..] = live.bodies()[0].centre(&live.simulation().state().v);
+                let [x, ..] = live.facts().bodies[0].centre(&live.simulation().state().v);
                 *speed = x;
             }
             let acceleration = (speeds[1] - speeds[0]) / (count as f64 * step);

@@ -58,9 +58,9 @@ fn a_sheet_that_is_clamped_along_a_line_is_the_heavy_elastica() {
     let (load, gravity) = heavy();
     let text = paper(&format!("{gravity}[[support]]\n{EDGE}\nhold = \"clamp\""));
     let setup = parse(&text).unwrap().build().unwrap();
-    let (start, origins) = (setup.start.x.clone(), setup.origins.clone());
+    let (start, facts) = (setup.start.x.clone(), setup.facts.clone());
     let mut simulation = setup.start().unwrap();
-    let supports = SupportForces::new(origins, &simulation, 1);
+    let supports = SupportForces::new(facts, &simulation, 1);
     settle(&mut simulation, 3.0);
     let [x, _, z] = tip(&simulation, &start);
     let found = [x / 0.2, -z / 0.2];

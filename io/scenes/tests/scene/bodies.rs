@@ -49,13 +49,13 @@ pub(crate) fn play(live: &mut LiveScene, duration: f64) -> usize {
 }
 
 pub(crate) fn centre(live: &LiveScene, body: usize) -> Vector3<f64> {
-    live.bodies()[body]
+    live.facts().bodies[body]
         .centre(&live.simulation().state().x)
         .into()
 }
 
 pub(crate) fn velocity(live: &LiveScene, body: usize) -> Vector3<f64> {
-    live.bodies()[body]
+    live.facts().bodies[body]
         .centre(&live.simulation().state().v)
         .into()
 }

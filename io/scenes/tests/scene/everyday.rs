@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Height of the highest vertex of a body.
 fn top(live: &LiveScene, body: usize) -> f64 {
-    let range = live.bodies()[body].surface();
+    let range = live.facts().bodies[body].surface();
     let x = live.positions();
     let heights = x.as_chunks::<3>().0[range].iter().map(|p| p[2]);
     heights.fold(f64::NEG_INFINITY, f64::max)

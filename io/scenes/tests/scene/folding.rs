@@ -429,7 +429,7 @@ fn folding_takes_the_frame_of_the_mesh() {
             &format!("{folding}{frame}"),
         );
         let setup = scene.unwrap().build().unwrap_or_else(|e| panic!("{e}"));
-        let targets = setup.targets.folding.unwrap().creases;
+        let targets = setup.targets.folding.clone().unwrap().creases;
         assert_eq!(targets.len(), 1);
         targets[0].1.to_degrees()
     };

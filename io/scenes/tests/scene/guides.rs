@@ -250,7 +250,7 @@ fn a_pulled_strip_drives_a_roller() {
     let before = live.simulation().state().t;
     let point = |live: &LiveScene| {
         // A point of the rim on the roller.
-        let first = live.bodies()[0].surface().start;
+        let first = live.facts().bodies[0].surface().start;
         Vector3::from(live.positions().as_chunks::<3>().0[first])
     };
     let middle = Vector3::new(0.0, 0.0, 0.0304);
@@ -317,7 +317,9 @@ fn a_force_pushes_a_body_where_it_acts() {
     ));
     play(&mut live, 0.5);
     // The integral of 4 t / 2 until 0.5 s, and the torque of 5e-4 N m on m a^2 / 6.
-    let v: Vector3<f64> = live.bodies()[0].centre(&live.simulation().state().v).into();
+    let v: Vector3<f64> = live.facts().bodies[0]
+        .centre(&live.simulation().state().v)
+        .into();
     assert!((v - Vector3::new(0.0, 0.25, 0.0025)).norm() < 2e-3, "{v}");
     let model = live.simulation().model();
     let state = live.simulation().state();
@@ -328,9 +330,13 @@ fn a_force_pushes_a_body_where_it_acts() {
     let key = "body[0].force[0].size".parse().unwrap();
     live.drive(&[(key, 0.0.into())], 0.502).unwrap();
     play(&mut live, 0.1);
-    let before: Vector3<f64> = live.bodies()[0].centre(&live.simulation().state().v).into();
+    let before: Vector3<f64> = live.facts().bodies[0]
+        .centre(&live.simulation().state().v)
+        .into();
     play(&mut live, 0.1);
-    let after: Vector3<f64> = live.bodies()[0].centre(&live.simulation().state().v).into();
+    let after: Vector3<f64> = live.facts().bodies[0]
+        .centre(&live.simulation().state().v)
+        .into();
     assert!((after.y - before.y).abs() < 1e-9);
 }
 

@@ -57,7 +57,7 @@ fn pin(live: &LiveScene) -> &[f64] {
 fn a_driven_pin_begins_where_it_is_and_ends_where_it_is_sent() {
     let mut live = live(HANGING);
     step(&mut live, 3);
-    let start = live.sheet().positions()[62];
+    let start = live.facts().sheet.positions()[62];
     let before = 0.01 * (std::f64::consts::TAU * 2.0 * live.simulation().state().t).sin();
     assert!((pin(&live)[2] - start - before).abs() < 1e-15);
     live.drive(&[(key("support[0].hold.moving_pin.z"), 0.05.into())], 0.05)

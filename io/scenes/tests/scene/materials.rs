@@ -128,7 +128,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
 fn a_scene_says_what_the_material_gives() {
     let setup = |lines: &str| sheet(lines).build(Path::new("")).unwrap();
     let paper = setup("material = \"office paper\"");
-    let said = paper.material.unwrap();
+    let said = paper.material.clone().unwrap();
     for part in [
         "office paper, uncoated",
         "0.08 kg/m2",

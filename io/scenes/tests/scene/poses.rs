@@ -84,7 +84,7 @@ fn a_tool_carries_what_it_holds_through_poses() {
     let (from, to) = ([0.01, 0.05, 0.02], [0.012, 0.047, 0.03]);
     live.drive(&[(key(CLAMP), pose(to, quaternion(angle)))], 0.2)
         .expect("a pose");
-    let rest = live.sheet().positions().to_vec();
+    let rest = live.facts().sheet.positions().to_vec();
     let held: Vec<usize> = (0..rest.len() / 3).filter(|v| rest[3 * v] == 0.0).collect();
     assert_eq!(held.len(), 3);
     for (part, steps) in [(0.5, 10), (1.0, 10), (1.0, 3)] {
@@ -123,7 +123,7 @@ fn an_obstacle_is_where_its_pose_says() {
         live.drive(&[(key.clone(), pose(position, q))], until)
             .unwrap_or_else(|e| panic!("{e}"));
         live.step(0.01).unwrap_or_else(|e| panic!("{e}"));
-        let body = live.obstacles()[0].motion().pose(until);
+        let body = live.facts().obstacles[0].motion().pose(until);
         let corner = [0.02, -0.03, 0.01];
         let is = (body * nalgebra::Point3::from(corner)).coords.into();
         let want = placed(matrix(q), corner, position);

@@ -157,7 +157,7 @@ proptest! {
         let text = scene.text();
         let file = parse(&text).unwrap_or_else(|e| panic!("{e}"));
         let mut live = LiveScene::start(file).unwrap_or_else(|e| panic!("{e}"));
-        let mesh = ContactMesh::from_topology(live.sheet().topology());
+        let mesh = ContactMesh::from_topology(live.facts().sheet.topology());
         for k in 0..STEPS {
             let step = live.step(1.0 / 60.0);
             let report = step.unwrap_or_else(|e| panic!("step {k}: {e}\n{text}"));

@@ -205,7 +205,7 @@ fn clearance(live: &LiveScene) -> f64 {
     let place = |v: usize| Vector3::from_column_slice(&x[3 * v..3 * v + 3]);
     let centre = centre(live, 0);
     let topology = live.simulation().model().topology();
-    let first = live.bodies()[0].vertices()[0].index();
+    let first = live.facts().bodies[0].vertices()[0].index();
     let sheet = topology
         .faces()
         .iter()

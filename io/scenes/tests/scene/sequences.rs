@@ -249,7 +249,7 @@ fn a_mesh_in_motion_that_does_not_deform_is_a_body_that_moves() {
     assert_eq!(a.model().mass().total(), b.model().mass().total());
     assert_eq!(a.model().mean_length(), b.model().mean_length());
     assert_eq!(expected.pins(), found.pins());
-    assert_eq!(found.parts()[1].0, "obstacle_0");
+    assert_eq!(found.facts().parts[1].0, "obstacle_0");
 }
 
 /// A ball that breathes lifts a free cloth that lies on it, without penetration, and bears its weight on the average.

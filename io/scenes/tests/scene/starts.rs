@@ -76,7 +76,7 @@ fn pins_hold_what_is_thrown() {
     ));
     assert_eq!(thrown.state().v[..6], [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
     let still = parse(&format!("{SQUARE}start = {{ seed = 1 }}\n")).unwrap();
-    let modelled = still.build().unwrap().modelled;
+    let modelled = still.build().unwrap().modelled.clone();
     assert!(!modelled.iter().any(|m| m.contains("velocities")));
 }
 
@@ -96,7 +96,7 @@ fn supports_bear_the_weights() {
     run(&mut hanging, 400, 0.02);
     let held: f64 = hanging.reactions().iter().map(|r| r.force.z).sum();
     assert!((held - 1.0).abs() < 1e-3, "{held} N");
-    let modelled = parse(&text).unwrap().build().unwrap().modelled;
+    let modelled = parse(&text).unwrap().build().unwrap().modelled.clone();
     assert!(modelled.iter().any(|m| m == "2 weights"), "{modelled:?}");
 }
 

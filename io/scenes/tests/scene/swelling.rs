@@ -24,9 +24,9 @@ fn a_strip_that_shrinks_pulls_at_its_supports() {
         ENDS,
     );
     let setup = parse(&text).unwrap().build().unwrap();
-    let origins = setup.origins.clone();
+    let facts = setup.facts.clone();
     let mut simulation = setup.start().unwrap();
-    let supports = SupportForces::new(origins, &simulation, 2);
+    let supports = SupportForces::new(facts, &simulation, 2);
     for _ in 0..90 {
         simulation.step(1.0 / 60.0).unwrap();
     }

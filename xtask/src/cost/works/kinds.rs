@@ -178,9 +178,9 @@ impl Work {
             return Ok(None);
         };
         let setup = scene.setup()?;
-        let origins = setup.origins.clone();
+        let facts = setup.facts.clone();
         let simulation = setup.start()?;
-        let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
+        let supports = SupportForces::new(facts, &simulation, scene.scene().support.len());
         let stop = scene.scene().stop.clone();
         Ok(Some(PreparedRun {
             plan: Plan::new(scene.frame(), scene.frames() as f64 * scene.frame()),

@@ -1,0 +1,34 @@
+//! A part of a sheet that is of another material.
+
+use crate::meshes::selection::Selection;
+use crate::sheets::material::Material;
+use crate::words::part::Part;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A part of a sheet that is of another material: a label, a reinforcement, a stiff board in a soft cover. Mass, stiffness in
+/// the plane and in bending, and the yield are those of its material; the distance of contact is that of the sheet.
+/// Where patches overlap, the last one counts.
+///
+/// ```toml
+/// [sheet]
+/// material = "office paper"
+///
+/// [[sheet.patch]]
+/// at = { box = { min = [0.05, 0, -1], max = [0.1, 0.05, 1] } }
+/// material = "card"
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
+#[serde(deny_unknown_fields)]
+pub struct Patch {
+    /// Its faces: those by number or of the group, or otherwise those all corners of which are selected.
+    pub at: Selection,
+    /// What it is made of.
+    pub material: Material,
+    /// The direction of its material, in the frame of the mesh. If left out, that of the sheet.
+    #[serde(default)]
+    pub direction: Option<[f64; 3]>,
+    /// Mass of a square metre, kg/m2. If left out, that of its material.
+    #[serde(default)]
+    pub density: Option<f64>,
+}

@@ -1,0 +1,64 @@
+//! The schema of scene files, made of the structs that read them.
+
+use crate::Scene;
+use isosheet_mesh::wording::given;
+use serde_json::Value;
+
+/// The JSON schema of scene files, for editors that complete and check TOML.
+pub fn schema() -> Value {
+    let mut schema = documented_schema();
+    remove_examples(&mut schema);
+    schema
+}
+
+/// The JSON schema whose descriptions have the examples in TOML of the documentation of the structs.
+pub fn documented_schema() -> Value {
+    let mut schema = schemars::schema_for!(Scene).to_value();
+    schema["title"] = "A scene of isosheet".into();
+    schema
+}
+
+/// How an example begins in a description.
+const EXAMPLE: &str = "```toml\n";
+
+/// Removes the examples from all descriptions.
+fn remove_examples(part: &mut Value) {
+    match part {
+        Value::Object(entries) => {
+            if let Some(Value::String(text)) = entries.get_mut("description")
+                && let Some((before, _)) = text.split_once(EXAMPLE)
+            {
+                *text = before.trim_end().to_owned();
+            }
+            entries.values_mut().for_each(remove_examples);
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(remove_examples),
+        _ => {}
+    }
+}
+
+/// A default or an example as one writes it in a scene; the inverse of a whole number as a fraction.
+pub fn as_written(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), number_as_written),
+        Value::Array(entries) => {
+            let entries: Vec<String> = entries.iter().map(as_written).collect();
+            format!("[{}]", entries.join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// Most digits that anybody writes.
+const DIGITS: usize = 8;
+
+fn number_as_written(value: f64) -> String {
+    let text = given(value).to_string();
+    let inverse = (1.0 / value).round();
+    match text.len() > DIGITS && 1.0 / inverse == value {
+        true => format!("1/{inverse}"),
+        false => text,
+    }
+}
