@@ -14,6 +14,12 @@ use std::sync::Arc;
 /// The name of the engine in checkpoints.
 const NAME: &str = "a chart";
 
+/// The outcome of a step in a chart, [`StepOutcome::Engine`].
+pub const IN_CHART: &str = "chart";
+
+/// The outcome of a step in a chart that has changed its reference state, [`StepOutcome::Engine`].
+pub const REBASED: &str = "rebased";
+
 /// A simulation of `model` from `state` in system coordinates.
 ///
 /// Velocities are projected onto those that keep the lengths. Supports that the chart does not eliminate
@@ -189,10 +195,10 @@ impl Engine for ChartEngine {
             }
             progress.accept(AcceptedSubstep {
                 rejected: report.rejected as usize,
-                outcome: match report.rebased {
-                    true => StepOutcome::Rebased,
-                    false => StepOutcome::Chart,
-                },
+                outcome: StepOutcome::Engine(match report.rebased {
+                    true => REBASED,
+                    false => IN_CHART,
+                }),
                 work,
                 dissipated: report.damped,
             });

@@ -24,7 +24,7 @@ mod state;
 mod stepping;
 mod substep;
 
-pub use engine::{in_chart, of_simulation, resume_in_chart};
+pub use engine::{IN_CHART, REBASED, in_chart, of_simulation, resume_in_chart};
 pub use error::ChartDynamicsError;
 pub use mechanics::{ChartMechanics, Equations};
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};

@@ -14,10 +14,10 @@ pub enum StepOutcome {
     BranchSeeded,
     /// Implicit Euler, after the chosen integrator had rejected every sub-step.
     Fallback,
-    /// An explicit step in a chart.
-    Chart,
-    /// As `Chart`, with a change of the reference state of the chart.
-    Rebased,
+    /// What an [engine](crate::engine::Engine) from outside did, in its own word. Of the words of several
+    /// sub-steps it is the last in the order of the alphabet.
+    #[serde(untagged)]
+    Engine(&'static str),
 }
 
 /// Result of one call of [`Simulation::step`](crate::Simulation::step).

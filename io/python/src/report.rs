@@ -100,8 +100,7 @@ fn path(outcome: StepOutcome) -> &'static str {
         StepOutcome::Globalised => "globalised",
         StepOutcome::BranchSeeded => "branch_seeded",
         StepOutcome::Fallback => "fallback",
-        StepOutcome::Chart => "chart",
-        StepOutcome::Rebased => "rebased",
+        StepOutcome::Engine(word) => word,
     }
 }
 
