@@ -1,17 +1,18 @@
-//! The pages and the schema of the book that are made of the code: `docs/scene.md` and `docs/scene.schema.json` of
-//! the structs that read scenes, `docs/materials.md` of the catalogue of materials.
+//! What is made of the code: `docs/scene.md` and `docs/scene.schema.json` of the structs that read scenes, the keys of
+//! scenes in the stubs of the Python module, and `docs/materials.md` of the catalogue of materials.
 
 mod materials;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
 use isosheet_files::{write_atomically, write_json};
 use isosheet_mesh::wording::given;
 use isosheet_scenes::{StartingPoint, UnitRange, as_written, documented_schema, schema};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
+use std::fs;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `reference`.
 #[derive(Debug, Args)]
@@ -26,7 +27,40 @@ pub(crate) fn run(args: &ReferenceArgs) -> Result<()> {
     for (name, page) in [("scene.md", page()), ("materials.md", materials::page())] {
         write_atomically(&args.out.join(name), |w| w.write_all(page.as_bytes()))?;
     }
-    Ok(write_json(&args.out.join("scene.schema.json"), &schema())?)
+    write_json(&args.out.join("scene.schema.json"), &schema())?;
+    let stubs = fs::read_to_string(STUBS)?;
+    let stubs = with_keys(&stubs).context("the stubs of Python have no class Scene")?;
+    Ok(write_atomically(Path::new(STUBS), |w| {
+        w.write_all(stubs.as_bytes())
+    })?)
+}
+
+/// The stubs of the Python module, for editors that complete.
+const STUBS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../io/python/isosheet/_isosheet.pyi"
+);
+
+/// The stubs with the keys of a scene as what the class `Scene` is called with.
+fn with_keys(stubs: &str) -> Option<String> {
+    let (before, scene) = stubs.split_once("class Scene:\n")?;
+    let (_, after) = scene.split_once(") -> Scene: ...\n")?;
+    let schema = schema();
+    let keys = schema["properties"].as_object().into_iter().flatten();
+    let keys = keys.filter(|(key, _)| !["sheet", "version"].contains(&key.as_str()));
+    let keys = keys.map(|(key, form)| {
+        let kind = match form["type"] == "array" {
+            true => "Sequence[Mapping[str, Any]]",
+            false => "Mapping[str, Any]",
+        };
+        format!("        {key}: {kind} | None = None,\n")
+    });
+    let keys: String = keys.collect();
+    let sheet = "Mapping[str, Any] | Sequence[Mapping[str, Any]]";
+    Some(format!(
+        "{before}class Scene:\n    def __new__(\n        cls,\n        *,\n        sheet: {sheet},\n        \
+         folder: _Path = \"\",\n{keys}        version: int = 1,\n    ) -> Scene: ...\n{after}"
+    ))
 }
 
 /// How an example begins in a description.

@@ -334,7 +334,8 @@ impl Run {
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
-        for series in run::measure_series(&self.recording.measures, &self.recording.facts.measures) {
+        for series in run::measure_series(&self.recording.measures, &self.recording.facts.measures)
+        {
             columns.set_item(series.name, array(py, &series.values))?;
         }
         Ok(columns)

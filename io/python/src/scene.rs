@@ -72,11 +72,6 @@ impl Scene {
 impl Scene {
     #[new]
     #[pyo3(signature = (*, folder = PathBuf::new(), **keys))]
-    #[pyo3(
-        text_signature = "(*, sheet, folder='', crease=None, folding=None, glue=None, weight=None, support=None, \
-                             obstacle=None, body=None, forces=None, air=None, contact=None, measure=None, \
-                             method=None, stop=None, output=None, version=1)"
-    )]
     fn with_keys(
         py: Python<'_>,
         folder: PathBuf,
@@ -86,6 +81,31 @@ impl Scene {
             Some(keys) => Self::of_keys(py, keys, &folder),
             None => Self::of_keys(py, &PyDict::new(py), &folder),
         }
+    }
+
+    /// What a scene is called with, for completion: the keys of the schema.
+    #[classattr]
+    fn __signature__(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let inspect = py.import("inspect")?;
+        let parameter = inspect.getattr("Parameter")?;
+        let keyword = parameter.getattr("KEYWORD_ONLY")?;
+        let schema = isosheet_scenes::schema();
+        let keys = schema["properties"].as_object().into_iter().flatten();
+        let keys = keys
+            .map(|(key, _)| key.as_str())
+            .filter(|key| *key != "sheet");
+        let parameters = ["sheet", "folder"].into_iter().chain(keys).map(|key| {
+            let options = PyDict::new(py);
+            match key {
+                "sheet" => {}
+                "folder" => options.set_item("default", "")?,
+                "version" => options.set_item("default", isosheet_scenes::VERSION)?,
+                _ => options.set_item("default", py.None())?,
+            }
+            parameter.call((key, &keyword), Some(&options))
+        });
+        let parameters = parameters.collect::<PyResult<Vec<_>>>()?;
+        inspect.call_method1("Signature", (parameters,))
     }
 
     /// The scene of a file, or of a text.

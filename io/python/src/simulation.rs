@@ -101,7 +101,12 @@ impl Simulation {
                 pins: live.pins().iter().map(|v| v.0).collect(),
                 summary: vec![("modelled".into(), live.facts().modelled.join(", "))],
                 scene: live.file().text().text.clone(),
-                ..replay_of(&live.facts().sheet, &live.facts().obstacles, &trajectory, &[])?
+                ..replay_of(
+                    &live.facts().sheet,
+                    &live.facts().obstacles,
+                    &trajectory,
+                    &[],
+                )?
             })
         });
         replay.map_err(|e| plain(py, &e))
@@ -420,7 +425,10 @@ impl Simulation {
     /// Rest lengths of the edges, metres, of shape (E,).
     #[getter]
     fn rest_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, &self.with(py, |live| live.facts().sheet.lengths().to_vec()))
+        array(
+            py,
+            &self.with(py, |live| live.facts().sheet.lengths().to_vec()),
+        )
     }
 
     /// Masses of the vertices, kg, of shape (V,); zero of those of rigid bodies.

@@ -27,22 +27,160 @@
 //! # }
 //! ```
 
-mod bodies;
-mod building;
+// From the ground up: a folder uses those before it alone.
+
+/// What is said of scenes: keys, units, what is wrong and where.
+mod words {
+    pub(crate) mod edit;
+    pub(crate) mod error;
+    pub(crate) mod key;
+    pub(crate) mod part;
+    pub(crate) mod plain_name;
+    pub(crate) mod problem;
+    pub(crate) mod resolution;
+    pub(crate) mod toml_problem;
+    pub(crate) mod unit;
+    pub(crate) mod warning;
+}
+
+/// Functions of time, and motions that are made of them.
+mod time {
+    pub(crate) mod kinks;
+    pub(crate) mod led;
+    pub(crate) mod pose;
+    pub(crate) mod poses;
+    pub(crate) mod profile;
+}
+
+/// Meshes: where they come from, and parts of them.
+mod meshes {
+    pub(crate) mod direction;
+    pub(crate) mod drawing;
+    pub(crate) mod foreign;
+    pub(crate) mod mesh;
+    pub(crate) mod mesh_file;
+    pub(crate) mod outline;
+    pub(crate) mod pattern;
+    pub(crate) mod selection;
+    pub(crate) mod sequence;
+    pub(crate) mod up_axis;
+}
+
+/// Sheets: what they are of, how they start, their creases.
+mod sheets {
+    pub(crate) mod creases;
+    pub(crate) mod curl;
+    pub(crate) mod fold_group;
+    pub(crate) mod folding;
+    pub(crate) mod material;
+    pub(crate) mod patch;
+    pub(crate) mod patched;
+    pub(crate) mod refined;
+    pub(crate) mod several;
+    pub(crate) mod sheet;
+    pub(crate) mod size;
+    pub(crate) mod start;
+    pub(crate) mod weight;
+    pub(crate) mod yields;
+}
+
+/// Loads: forces, pressures and the air.
+mod loads {
+    pub(crate) mod air;
+    pub(crate) mod attached_flow;
+    pub(crate) mod enclosed;
+    pub(crate) mod follower_loads;
+    pub(crate) mod forces;
+}
+
+/// What a sheet meets: obstacles, and bodies that respond.
+mod bodies {
+    pub(crate) mod body;
+    pub(crate) mod carried;
+    pub(crate) mod friction;
+    pub(crate) mod guides;
+    pub(crate) mod obstacle_names;
+    pub(crate) mod obstacles;
+    pub(crate) mod round_bodies;
+}
+
+/// Sheets, bodies and obstacles in their places.
+mod placing {
+    pub(crate) mod driven;
+    pub(crate) mod driven_surface;
+    pub(crate) mod in_words;
+    pub(crate) mod placed;
+    pub(crate) mod placed_bodies;
+    pub(crate) mod slots;
+}
+
+/// What is read off: measures, and how far targets are reached.
+mod measures {
+    pub(crate) mod measure;
+    pub(crate) mod targets;
+}
+
+/// What holds and touches: supports, seams and contact, and when they do.
+mod holding {
+    pub(crate) mod bond;
+    pub(crate) mod contact;
+    pub(crate) mod glue;
+    pub(crate) mod supports;
+    pub(crate) mod switch;
+}
+
+/// How a scene is run: the method, the end and the files.
+mod methods {
+    pub(crate) mod chart;
+    pub(crate) mod integration;
+    pub(crate) mod method;
+    pub(crate) mod output;
+    pub(crate) mod stop;
+}
+
+/// What is found and checked in the scene as a whole.
+mod whole {
+    pub(crate) mod functions;
+    pub(crate) mod named_file;
+    pub(crate) mod names;
+    pub(crate) mod periods;
+    pub(crate) mod selections;
+    pub(crate) mod step_path;
+    pub(crate) mod switches;
+    pub(crate) mod turning_back;
+}
+
+/// From a scene to a simulation.
+mod building {
+    pub(crate) mod build;
+    pub(crate) mod engine_problem;
+    pub(crate) mod setup;
+    pub(crate) mod support_forces;
+    pub(crate) mod warnings;
+}
+
+/// Texts of scenes: how they are read, written and begun.
+mod text {
+    pub(crate) mod changed;
+    pub(crate) mod fold_scene;
+    pub(crate) mod form;
+    pub(crate) mod schema;
+    pub(crate) mod source;
+    pub(crate) mod starting_point;
+}
+
+/// Simulations of scenes that go on, and change.
+mod running {
+    pub(crate) mod courses;
+    pub(crate) mod driven_into;
+    pub(crate) mod jump;
+    pub(crate) mod live;
+    pub(crate) mod too_fast;
+    pub(crate) mod under_way;
+}
+
 #[cfg(test)]
 mod found_tests;
-mod holding;
-mod loads;
-mod measures;
-mod meshes;
-mod methods;
-mod placing;
-mod running;
-mod sheets;
-mod text;
-mod time;
-mod whole;
-mod words;
 
 pub use bodies::body::Body;
 pub use bodies::carried::{BodyLoad, CarriedBody};

@@ -1,6 +1,6 @@
 //! The reference in the repository is current, and follows a scene.
 
-use super::{materials, page};
+use super::{STUBS, materials, page, with_keys};
 use isosheet_scenes::schema;
 use serde_json::Value;
 use std::path::Path;
@@ -15,6 +15,11 @@ fn the_reference_in_the_repository_is_current() {
     let text = std::fs::read_to_string(docs.join("scene.schema.json")).unwrap();
     let committed: Value = serde_json::from_str(&text).unwrap();
     assert!(committed == schema(), "call `cargo xtask reference`");
+    let stubs = std::fs::read_to_string(STUBS).unwrap();
+    assert!(
+        with_keys(&stubs) == Some(stubs),
+        "call `cargo xtask reference`"
+    );
 }
 
 /// The sections of the page are in the order of the keys of a scene, and each with keys has an example.

@@ -1,11 +1,11 @@
 //! The functions of time of a scene, and the motions that are made of them.
 
-use crate::Scene;
 use crate::time::pose::Motion;
 use crate::time::poses::Poses;
 use crate::time::profile::Profile;
 use crate::words::key::{Key, KeyPart};
 use crate::words::part::{all, all_mut};
+use crate::{AnyPart, Place, Scene, Unit};
 use nalgebra::Isometry3;
 
 /// A function of time of a scene.
@@ -34,9 +34,9 @@ impl Scene {
     /// All functions of time.
     pub fn functions(&self) -> Vec<Function<'_>> {
         let functions = all(self, Key::root()).into_iter();
-        let function = |(at, profile): (crate::Place, _)| Function {
+        let function = |(at, profile): (Place, _)| Function {
             profile,
-            unit: at.unit.map_or("", crate::Unit::symbol),
+            unit: at.unit.map_or("", Unit::symbol),
             key: at.key,
         };
         functions.map(function).collect()
@@ -80,7 +80,7 @@ impl Motion {
 }
 
 /// When functions of time and poses in a part of a scene change abruptly, seconds.
-fn breaks(part: &crate::AnyPart) -> Vec<f64> {
+fn breaks(part: &AnyPart) -> Vec<f64> {
     let functions = all::<Profile>(part, Key::root()).into_iter();
     let poses = all::<Poses>(part, Key::root()).into_iter();
     let of_functions = functions.flat_map(|(_, function)| function.breaks());
