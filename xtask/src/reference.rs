@@ -1,5 +1,6 @@
-//! The pages and the schema of the book that are made of the code: `docs/scene.md` and `docs/scene.schema.json` of
-//! the structs that read scenes, `docs/materials.md` of the catalogue of materials.
+//! The pages and the schema of the book that are made of the code: `docs/scene.md` and
+//! `docs/scene.schema.json` of the structs that read scenes, `docs/materials.md` of the catalogue of
+//! materials.
 
 mod materials;
 
