@@ -56,25 +56,25 @@ pub(crate) enum Command {
     Locking(LockingArgs),
     /// Run published experiments and closed forms with the elastic sheet, and tell how far each number is off
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots, and prints the
-    /// findings. Finished experiments are kept, as in `reproduce-figures`. The exit code is 0 unless an error is
-    /// larger than the documentation says and not declared an open limitation.
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots, and prints
+    /// the findings. Finished experiments are kept, as in `reproduce-figures`. The exit code is 0 unless an
+    /// error is larger than the documentation says and not declared an open limitation.
     Validation(ValidationArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
-    /// Writes DIR/index.html (self-contained) and DIR/findings.csv, and prints a table. The exit code is 0 unless
-    /// a case fails that is not declared an open limitation. Finished cases are kept, as in
+    /// Writes DIR/index.html (self-contained) and DIR/findings.csv, and prints a table. The exit code is 0
+    /// unless a case fails that is not declared an open limitation. Finished cases are kept, as in
     /// `reproduce-figures`.
     HardCases(HardCasesArgs),
     /// Make the figures, the table of condition numbers and all reports, one after another
     ///
-    /// Each is written to its own folder, DIR/REPORT. One that fails is reported, and the next one begins; the
-    /// exit code is 0 if none fails. What is finished is kept, as in `reproduce-figures`.
+    /// Each is written to its own folder, DIR/REPORT. One that fails is reported, and the next one begins;
+    /// the exit code is 0 if none fails. What is finished is kept, as in `reproduce-figures`.
     All(AllArgs),
     /// Copy what the reports have measured into the book and the README, or list what is out of date
     ///
-    /// Each report writes DIR/measured.md, unless it is quick. This command puts the parts of these files into
-    /// those of docs/measured and fills the marked blocks of README.md and of the pages of the book.
+    /// Each report writes DIR/measured.md, unless it is quick. This command puts the parts of these files
+    /// into those of docs/measured and fills the marked blocks of README.md and of the pages of the book.
     Measured(MeasuredArgs),
     /// Make the pictures of the README: eighteen scenes that anybody can run, and a film of one of them
     ///

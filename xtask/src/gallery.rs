@@ -1,7 +1,7 @@
 //! `gallery`: scenes that anybody can run, each as a labelled picture, and a film of one of them.
 //!
-//! `xtask/gallery.toml` says which, and how they are shown. It is read when the command runs, so that the runs that
-//! are there are drawn anew without a build.
+//! `xtask/gallery.toml` says which, and how they are shown. It is read when the command runs, so that the
+//! runs that are there are drawn anew without a build.
 
 use crate::progress::Progress;
 use crate::report::Options;

@@ -72,7 +72,7 @@ struct Point {
     method: &'static str,
     step_s: f64,
     cpu_s_per_simulated_s: f64,
-    /// These three of runs that came to the end with steps as asked for.
+    /// Of runs that came to the end with steps as asked for, as are the next two.
     position_error_m: Option<f64>,
     relative_energy_error: Option<f64>,
     strain: Option<f64>,
@@ -291,11 +291,11 @@ fn of<'a>(points: &'a [Point], method: &'a str) -> impl Iterator<Item = &'a Poin
     points.iter().filter(move |p| p.method == method)
 }
 
-/// Order of a method: the slope of its error over its step in the finest runs above the floor, of those that are
-/// made in any case; nothing from fewer than three.
+/// Order of a method: the slope of its error over its step in the finest runs above the floor, of those that
+/// are made in any case; nothing from fewer than three.
 ///
-/// (The round-off of damped methods grows as steps get shorter, since an acceleration is a difference of positions
-/// over the square of the step: below some 1e-5 s it exceeds their error.)
+/// (The round-off of damped methods grows as steps get shorter, since an acceleration is a difference of
+/// positions over the square of the step: below some 1e-5 s it exceeds their error.)
 fn order(problem: ExactProblem, points: &[Point], method: &str) -> Option<f64> {
     let made = of(points, method).take(problem.least_runs() as usize);
     let errors = made.filter_map(|p| Some([p.step_s, p.position_error_m?]));

@@ -1,4 +1,5 @@
-//! Eq. 21 of the paper, `C qdot = p`, by Cramer's rule as published, by dense LU, and by the sparse saddle-point matrix.
+//! Eq. 21 of the paper, `C qdot = p`, by Cramer's rule as published, by dense LU, and by the sparse
+//! saddle-point matrix.
 
 use crate::draw::mesh_name;
 use crate::interrupt;

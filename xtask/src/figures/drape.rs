@@ -311,8 +311,8 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 /// Corners of the irregular polygons of the study; 48 stand for the circle.
 const SIDES: [u32; 5] = [4, 6, 8, 12, 16];
 
-/// Members of the ensembles of Fig. 15 but of those with the smallest meshes: with all of them the figure would
-/// take a quarter of an hour.
+/// Members of the ensembles of Fig. 15 but of those with the smallest meshes: with all of them the figure
+/// would take a quarter of an hour.
 const FEW: usize = 4;
 
 /// Polygons that the picture shows.

@@ -23,8 +23,8 @@ const PUBLISHED: [Published; 5] = [
     (15, None, ["244/440", "0.435", "1.5/30"]),
 ];
 
-/// Parts of a mean edge length by which vertices are displaced in the plane of the sheet: the paper's remedy for straight
-/// creases (its Fig. 7).
+/// Parts of a mean edge length by which vertices are displaced in the plane of the sheet: the paper's remedy
+/// for straight creases (its Fig. 7).
 const JITTERS: [(f64, &str); 3] = [
     (
         0.01,
@@ -135,8 +135,8 @@ impl Tried {
         })
     }
 
-    /// Whether the scheme as published was refused at the start on the meshes as they are, and did not reach the end
-    /// on any of those with the paper's remedy, if it was tried.
+    /// Whether the scheme as published was refused at the start on the meshes as they are, and did not reach
+    /// the end on any of those with the paper's remedy, if it was tried.
     fn is_published_stuck(&self) -> bool {
         self.charts.iter().all(|(name, all)| {
             let is_jittered = JITTERS.iter().any(|(_, jittered)| jittered == name);

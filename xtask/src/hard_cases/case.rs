@@ -154,8 +154,8 @@ impl Case {
         Ok(())
     }
 
-    /// Runs all variants, judges what they say, and tabulates them. A check may be for variants that reports of
-    /// less effort do not have.
+    /// Runs all variants, judges what they say, and tabulates them. A check may be for variants that reports
+    /// of less effort do not have.
     pub(super) fn run(&self, effort: Effort) -> Result<(Vec<Finding>, Table)> {
         self.require_runs()?;
         let runs = self.runs(effort)?.into_par_iter().with_max_len(1);

@@ -209,11 +209,11 @@ impl Required {
     }
 }
 
-/// What every accepted step guarantees: lengths to within the limit of the strain that all models have by default, those
-/// of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
+/// What every accepted step guarantees: lengths to within the limit of the strain that all models have by
+/// default, those of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
 ///
-/// The norm of Green's strain `(l^2 / L^2 - 1) / 2` is below the limit `m`, so that an edge becomes shorter by a part of
-/// `1 - sqrt(1 - 2 m)` at most, and longer by less.
+/// The norm of Green's strain `(l^2 / L^2 - 1) / 2` is below the limit `m`, so that an edge becomes shorter
+/// by a part of `1 - sqrt(1 - 2 m)` at most, and longer by less.
 fn guarantees() -> [(&'static str, Bound); 3] {
     [
         (

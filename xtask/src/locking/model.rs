@@ -83,8 +83,8 @@ impl Model {
 }
 
 impl Plate<'_> {
-    /// With a Poisson's ratio of zero: otherwise the sides of strips curl, and a strip of paper is softer than
-    /// the elastica by one or two per cent.
+    /// With a Poisson's ratio of zero: otherwise the sides of strips curl, and a strip of paper is softer
+    /// than the elastica by one or two per cent.
     fn bending(&self, sheet: &Sheet) -> Result<PlateBending> {
         let (clamped, creases) = (self.clamped, self.creases);
         Ok(PlateBending::creased(

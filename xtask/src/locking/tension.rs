@@ -9,8 +9,8 @@ use isosheet_dynamics::Simulation;
 use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
 
-/// The area mean of the height of the cloth, metres: that of sheets which are too soft in their plane to lock, without
-/// slack and without a limit that acts (1000 N/m on 16 641 vertices; 300 N/m on 1089 and 4225).
+/// The area mean of the height of the cloth, metres: that of sheets which are too soft in their plane to
+/// lock, without slack and without a limit that acts (1000 N/m on 16 641 vertices; 300 N/m on 1089 and 4225).
 const DRAPED: f64 = -0.354;
 
 /// A run of a scene.

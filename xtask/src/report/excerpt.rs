@@ -1,8 +1,8 @@
 //! What the book shows of a report: `measured.md` beside the page of the report, in parts that pages of the
 //! book copy by their names.
 //!
-//! A file has one or several measurements, each with its origin and its parts. The file of a report has one; in
-//! `docs/measured` parts stay until they are measured anew.
+//! A file has one or several measurements, each with its origin and its parts. The file of a report has one;
+//! in `docs/measured` parts stay until they are measured anew.
 
 use super::{Effort, Table};
 use crate::store::Store;

@@ -200,8 +200,8 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest time of the processor on the thread of a course, seconds. A run ends in the step in which it is
-    /// over, or after it, unless it is the last one.
+    /// Longest time of the processor on the thread of a course, seconds. A run ends in the step in which it
+    /// is over, or after it, unless it is the last one.
     pub(crate) patience: f64,
 }
 

@@ -36,8 +36,8 @@ impl FigureScene {
         })
     }
 
-    /// A scene that `isosheet new` writes if there is one of that kind, or else a file of `xtask/scenes`, with
-    /// edits.
+    /// A scene that `isosheet new` writes if there is one of that kind, or else a file of `xtask/scenes`,
+    /// with edits.
     ///
     /// # Errors
     /// As [`FigureScene::of`].

@@ -45,12 +45,14 @@ pub(super) const CURLED: Experiment = Experiment {
     measure: curled,
 };
 
-/// Curvature over `alpha` of a long strip of the thickness `t` with the natural curvature `alpha` in both directions.
+/// Curvature over `alpha` of a long strip of the thickness `t` with the natural curvature `alpha` in both
+/// directions.
 ///
-/// Bent to the curvature `k` along its length the strip, `2 b` wide, has the deflection `v(y)` from a cylinder, which
-/// stretches it by `k v`: `D v'''' + E t k^2 v = 0` with `v''' = 0` and `v'' = q = alpha - nu (k - alpha)` at its edges,
-/// so that `v = A cosh(p y) cos(p y) + B sinh(p y) sin(p y)`, `p^4 = 3 (1 - nu^2) k^2 / t^2`. With it the energy of a unit
-/// of length is `D (b (1 - nu^2) (k - alpha)^2 + q (b q - v'(b)))`, of which `k` is the minimum.
+/// Bent to the curvature `k` along its length the strip, `2 b` wide, has the deflection `v(y)` from a
+/// cylinder, which stretches it by `k v`: `D v'''' + E t k^2 v = 0` with `v''' = 0` and `v'' = q = alpha - nu
+/// (k - alpha)` at its edges, so that `v = A cosh(p y) cos(p y) + B sinh(p y) sin(p y)`, `p^4 = 3 (1 - nu^2)
+/// k^2 / t^2`. With it the energy of a unit of length is `D (b (1 - nu^2) (k - alpha)^2 + q (b q - v'(b)))`,
+/// of which `k` is the minimum.
 fn both(t: f64) -> f64 {
     let b = BROAD / 2.0;
     let rest = 1.0 - POISSON * POISSON;
@@ -109,8 +111,8 @@ fn curled(job: Job) -> Result<Measured> {
     Ok(all)
 }
 
-/// Curvature of the circle in the plane of x and z that fits the vertices of the middle half of the strip by least
-/// squares of `x^2 + z^2 + a x + c z + d` (Kasa 1976).
+/// Curvature of the circle in the plane of x and z that fits the vertices of the middle half of the strip by
+/// least squares of `x^2 + z^2 + a x + c z + d` (Kasa 1976).
 fn middle_curvature(sheet: &Sheet, x: &[f64]) -> f64 {
     let places = sheet.positions().as_chunks::<3>().0.iter();
     let middle = places.zip(x.as_chunks::<3>().0);

@@ -1,5 +1,5 @@
-//! Claims that are known not to be kept, with the cause: the file `limitations.toml`. It is read as a report is
-//! written, so that what was measured does not depend on it.
+//! Claims that are known not to be kept, with the cause: the file `limitations.toml`. It is read as a report
+//! is written, so that what was measured does not depend on it.
 
 use crate::report::{Effort, Finding, Shortfall};
 use crate::sources::root;
@@ -40,8 +40,8 @@ impl Limitations {
         toml::from_str(&text).with_context(named)
     }
 
-    /// Says in a finding that its claim is known not to be kept, where that is so. A quick report has some of the
-    /// meshes alone, whose largest error may be smaller.
+    /// Says in a finding that its claim is known not to be kept, where that is so. A quick report has some of
+    /// the meshes alone, whose largest error may be smaller.
     pub(super) fn declare(
         &self,
         finding: &mut Finding,

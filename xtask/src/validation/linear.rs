@@ -119,8 +119,8 @@ pub(super) fn stiffness(model: &SheetModel, x: &[f64]) -> Symmetric {
 const VECTORS: usize = 10;
 const ITERATIONS: usize = 60;
 
-/// The smallest positive `lambda` with `a z = lambda b z`, in rising order; `a` is positive definite. (Subspace
-/// iteration: K.-J. Bathe, *Finite Element Procedures*, section 11.6.)
+/// The smallest positive `lambda` with `a z = lambda b z`, in rising order; `a` is positive definite.
+/// (Subspace iteration: K.-J. Bathe, *Finite Element Procedures*, section 11.6.)
 pub(super) fn eigenvalues(a: &Symmetric, b: &Symmetric) -> Result<Vec<f64>> {
     let mut factor = a.factorised()?;
     let mut rng = ChaCha8Rng::seed_from_u64(1);

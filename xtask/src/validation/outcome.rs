@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 /// Sizes, squares across.
 pub(super) const SIZES: [usize; 3] = [4, 8, 16];
 
-/// The claim of the book: the largest errors, per cent, at these sizes. The first follows from the second by second
-/// order.
+/// The claim of the book: the largest errors, per cent, at these sizes. The first follows from the second by
+/// second order.
 const CLAIMS: [f64; 3] = [12.0, 3.0, 1.0];
 
 /// What is kept of an experiment.

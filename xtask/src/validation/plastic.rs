@@ -43,8 +43,8 @@ pub(super) const YIELDING: Experiment = Experiment {
     measure: yielding,
 };
 
-/// The tip of a strip of length 1 whose curvature follows from the moment over [`MOMENT`], which is linear and so
-/// large at the clamp.
+/// The tip of a strip of length 1 whose curvature follows from the moment over [`MOMENT`], which is linear
+/// and so large at the clamp.
 fn residual(largest: f64, curvature: impl Fn(f64) -> f64) -> f64 {
     let panels = 20_000;
     let h = 1.0 / f64::from(panels);
@@ -86,7 +86,8 @@ fn yielding(job: Job) -> Result<Measured> {
 mod tests {
     use super::*;
 
-    /// Without yield beyond `1 / m` of the length the tip of the section in one layer is an integral of a polynomial.
+    /// Without yield beyond `1 / m` of the length the tip of the section in one layer is an integral of a
+    /// polynomial.
     #[test]
     fn the_residual_of_one_layer_is_a_polynomial() {
         let m = 1.3_f64;

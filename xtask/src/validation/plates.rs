@@ -9,8 +9,8 @@ use isosheet_dynamics::{MaterialDirection, OrthotropicPlate, PlateBending, Plate
 use isosheet_mesh::{FlatCut, Sheet};
 use std::f64::consts::PI;
 
-/// Thickness over the side, and the deflection over the side: a thousandth of the thickness, so that no tension
-/// matters.
+/// Thickness over the side, and the deflection over the side: a thousandth of the thickness, so that no
+/// tension matters.
 const THICKNESS: f64 = 1e-2;
 const DEFLECTION: f64 = 1e-5;
 

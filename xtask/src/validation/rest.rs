@@ -29,8 +29,9 @@ const STILL: f64 = 1e-6;
 const LEFT: f64 = 1e-4;
 
 impl Rest {
-    /// From the rest shape of the sheet. `size` (metres) is how far it moves, about; `step` (seconds) the length of
-    /// a step, about the time of its slowest motion: `length^2 (density / rigidity)^(1/2)` of a strip.
+    /// From the rest shape of the sheet. `size` (metres) is how far it moves, about; `step` (seconds) the
+    /// length of a step, about the time of its slowest motion: `length^2 (density / rigidity)^(1/2)` of a
+    /// strip.
     pub(super) fn new(sheet: &Sheet, size: f64, step: f64) -> Self {
         Self {
             x: sheet.positions().to_vec(),

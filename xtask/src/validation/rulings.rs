@@ -7,7 +7,8 @@ use isosheet_mesh::{Sheet, angle_deficits};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Radius of the cylinder, half angle of the cone, and twist of the helicoid (1/m); the sheets are squares of a metre.
+/// Radius of the cylinder, half angle of the cone, and twist of the helicoid (1/m); the sheets are squares of
+/// a metre.
 const RADIUS: f64 = 0.8;
 const HALF_ANGLE: f64 = 0.7;
 const TWIST: f64 = 0.8;
@@ -97,8 +98,8 @@ fn errors(flat: &Sheet, map: fn([f64; 2]) -> Point) -> Result<[f64; 2]> {
     Ok(sums.map(|sum| f64::sqrt(sum / count)))
 }
 
-/// The integral of the Gauss curvature `-t^2 / (1 + t^2 u^2)^2` of the helicoid `(u cos t v, u sin t v, v)` times
-/// `sin(pi x) sin(pi y)`, over its exact value, with the angle deficits of the vertices.
+/// The integral of the Gauss curvature `-t^2 / (1 + t^2 u^2)^2` of the helicoid `(u cos t v, u sin t v, v)`
+/// times `sin(pi x) sin(pi y)`, over its exact value, with the angle deficits of the vertices.
 fn deficits(flat: &Sheet) -> Result<f64> {
     let twisted = flat.map_positions(|[x, y, _]| {
         let (u, v) = (x - 0.5, y - 0.5);

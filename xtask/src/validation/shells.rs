@@ -23,8 +23,8 @@ fn shell(youngs: f64, thickness: f64, poisson: f64) -> Result<Material> {
     })?)
 }
 
-/// The model of a shell that is free of stress as it is, and symmetric about planes through the origin along lines of
-/// its outline: there vertices stay in the plane, and slopes as they are.
+/// The model of a shell that is free of stress as it is, and symmetric about planes through the origin along
+/// lines of its outline: there vertices stay in the plane, and slopes as they are.
 fn symmetric(
     sheet: &Sheet,
     material: &Material,

@@ -9,8 +9,8 @@ use isosheet_dynamics::{
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 
-/// A sheet of one square metre that weighs 1 kg, of a rigidity (N m) and a Poisson's ratio, and of the thickness
-/// (metres) that an isotropic plate has with its membrane stiffness.
+/// A sheet of one square metre that weighs 1 kg, of a rigidity (N m) and a Poisson's ratio, and of the
+/// thickness (metres) that an isotropic plate has with its membrane stiffness.
 pub(super) fn material(rigidity: f64, poisson: f64, thickness: f64) -> Material {
     let mut material = Material::office_paper();
     material.density = 1.0;
@@ -125,8 +125,8 @@ pub(super) fn clamped_along(
     Ok(PlateBending::held(sheet, law, &edges)?)
 }
 
-/// The model of a sheet whose material gives mass and stiffness in the plane, with pinned vertices and a bending
-/// stiffness of its own.
+/// The model of a sheet whose material gives mass and stiffness in the plane, with pinned vertices and a
+/// bending stiffness of its own.
 pub(super) fn with_plate(
     sheet: &Sheet,
     material: &Material,

@@ -21,8 +21,8 @@ pub(super) const SQUEEZED: Experiment = Experiment {
     measure: squeezed,
 };
 
-/// `(integral from 0 to pi of sin(a)^(1/2) / 2^(1/2) da)^2`: the force bends the strip by `D k^2 / 2 = F sin a` where it
-/// has turned by `a`, and the sides of the U are as far apart as `sin a` summed over its length.
+/// `(integral from 0 to pi of sin(a)^(1/2) / 2^(1/2) da)^2`: the force bends the strip by `D k^2 / 2 = F sin
+/// a` where it has turned by `a`, and the sides of the U are as far apart as `sin a` summed over its length.
 const FORCE: f64 = 2.871_080_04;
 
 const LENGTH: f64 = 4.0;

@@ -81,8 +81,8 @@ pub(super) const SAGGING: Experiment = Experiment {
     measure: sagging,
 };
 
-/// The sag of a strip between hinges that do not move, metres: the tension `N` satisfies `N / (E h) = 1/(2 L) int
-/// w'^2 dx` with `w' = q / N (x - sinh(k x) / (k cosh(k L / 2)))`, `k^2 = N / D`, `x` from the middle.
+/// The sag of a strip between hinges that do not move, metres: the tension `N` satisfies `N / (E h) = 1/(2 L)
+/// int w'^2 dx` with `w' = q / N (x - sinh(k x) / (k cosh(k L / 2)))`, `k^2 = N / D`, `x` from the middle.
 fn sag(length: f64, load: f64, stiffness: f64, rigidity: f64) -> f64 {
     let half = 0.5 * length;
     let extension = |tension: f64| {

@@ -24,10 +24,10 @@ use std::path::{Path, PathBuf};
 pub struct Sequence {
     /// Path, relative to the scene file: the folder of a run, whose trajectory is taken; an archive of numpy
     /// (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0), which
-    /// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes; a list of mesh files with their times in seconds
-    /// (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end in the numbers of frames, or a pattern
-    /// with one `*` for these numbers, `walk/walk_*.obj`. VTK files may have times. Without it the scene has
-    /// `frames`.
+    /// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes; a list of mesh files with their times in
+    /// seconds (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end in the numbers of frames,
+    /// or a pattern with one `*` for these numbers, `walk/walk_*.obj`. VTK files may have times. Without it
+    /// the scene has `frames`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<PathBuf>,
     /// The frames from a program, in place of a file.
@@ -40,7 +40,8 @@ pub struct Sequence {
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z. To be left out for a file of glTF, which says it.
+    /// The axis of the file that points upwards; it becomes z. To be left out for a file of glTF, which says
+    /// it.
     #[serde(default)]
     pub up: UpAxis,
     /// What is added to the times of the file, seconds.

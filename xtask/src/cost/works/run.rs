@@ -16,8 +16,8 @@ use std::time::Duration;
 /// A run from one start.
 #[derive(Clone, Debug, Default)]
 struct TimedRun {
-    /// Its CPU time is that of all threads, its strain that of the edges of rods or of the faces of an elastic
-    /// sheet.
+    /// Its CPU time is that of all threads, its strain that of the edges of rods or of the faces of an
+    /// elastic sheet.
     course: Course,
     /// Change of the energy at the end, and the largest one on the way, joules.
     changes: [f64; 2],
@@ -133,8 +133,8 @@ impl WorkRow {
     }
 }
 
-/// Runs a work from all starts. After a start that is refused, or a run that does not come to its end, no other start is
-/// tried.
+/// Runs a work from all starts. After a start that is refused, or a run that does not come to its end, no
+/// other start is tried.
 ///
 /// # Errors
 /// A scene of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
