@@ -228,10 +228,7 @@ impl Term for Floor {
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let energy = |x: &[f64]| heights(x).map(|z| -self.0 * z.ln()).sum::<f64>();
         let stored = energy(at.x) - energy(&step.state.x);
-        let mut exchange = Exchange::default();
-        exchange.driven = -stored;
-        exchange.driven_size = stored.abs();
-        Ok(exchange)
+        Ok(Exchange::driven(-stored))
     }
 }
 
