@@ -29,7 +29,8 @@ pub struct Recording {
     pub scene: SceneFile,
     /// What is known of the scene at its start. A recording has its fields.
     pub facts: Arc<Facts>,
-    /// Vertices of sheets that rods to pins keep in place ([`immobile_vertices`](isosheet_dynamics::immobile_vertices)).
+    /// Vertices of sheets that rods to pins keep in place
+    /// ([`immobile_vertices`](isosheet_dynamics::immobile_vertices)).
     pub immobile: Vec<VertexId>,
     /// The model.
     pub(crate) model: Arc<SheetModel>,

@@ -9,8 +9,8 @@ use syn::{
 };
 
 /// Makes a struct or an enum a part of a scene: its fields are its parts, at the keys at which `serde` reads
-/// them. A function of time says what it is in, `#[unit(Metre)]`. What is `#[checked]` checks its own numbers by
-/// a function `check(&self, key: &Key, checks: &mut Checks)`.
+/// them. A function of time says what it is in, `#[unit(Metre)]`. What is `#[checked]` checks its own numbers
+/// by a function `check(&self, key: &Key, checks: &mut Checks)`.
 #[proc_macro_derive(Part, attributes(checked, serde, unit))]
 pub fn derive_part(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let input = parse_macro_input!(input as DeriveInput);

@@ -56,8 +56,8 @@ pub struct Facts {
     pub pins: Vec<VertexId>,
     /// The edges of the sheets that have creases.
     pub creased: Vec<EdgeId>,
-    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
-    /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
+    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a
+    /// crease pattern among the meshes; `None` for an edge of which the pattern does not say it.
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
 }
 

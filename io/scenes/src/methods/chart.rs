@@ -54,7 +54,8 @@ pub enum Coordinates {
     Cartesian,
     /// The coordinates that the paper's front assigns as it passes over the sheet.
     Front,
-    /// The coordinates of the front, with one more for each vertex whose three known neighbours are on a line.
+    /// The coordinates of the front, with one more for each vertex whose three known neighbours are on a
+    /// line.
     FrontWithStraightCreases,
 }
 

@@ -292,8 +292,8 @@ impl LiveScene {
         self.step_observed(h, watch, &mut |_, _| ())
     }
 
-    /// Advances as [`LiveScene::step_watched`] does, and shows the state at the end of the step, before anything is
-    /// taken up or released there.
+    /// Advances as [`LiveScene::step_watched`] does, and shows the state at the end of the step, before
+    /// anything is taken up or released there.
     pub fn step_observed(
         &mut self,
         h: f64,

@@ -19,7 +19,8 @@ pub(crate) type See<'s, 'a> = &'s mut dyn FnMut(Place, &'a AnyPart);
 pub(crate) type SeeMut<'s, 'a> = &'s mut dyn FnMut(Place, &'a mut AnyPart);
 
 /// A part of a scene. `#[derive(Part)]` makes structs and enums parts, and their fields the parts of these: a
-/// field that is no part does not compile. A type that is `#[checked]` has a function `check` of its own numbers.
+/// field that is no part does not compile. A type that is `#[checked]` has a function `check` of its own
+/// numbers.
 pub(crate) trait Part: Any {
     /// Shows its parts, which it has at a place, in their order.
     fn parts<'a>(&'a self, _at: &Place, _see: See<'_, 'a>) {}
