@@ -104,7 +104,8 @@ const ABOVE: f64 = 0.02;
 const CRUMPLED: f64 = 0.45;
 
 impl ActionScene {
-    /// The text of the scene. The top of a body that the sheet drapes over, and the vertices that it hangs by, are at z = 0.
+    /// The text of the scene. The top of a body that the sheet drapes over, and the vertices that it hangs
+    /// by, are at z = 0.
     ///
     /// # Errors
     /// [`FileError`] if the path of a file cannot be written.
@@ -202,8 +203,8 @@ impl ActionScene {
         self.refine.unwrap_or(least)
     }
 
-    /// The turn that lays a flat sheet on its face. One that is crumpled is turned about z besides, so that the plates come
-    /// from the corners of a rectangle.
+    /// The turn that lays a flat sheet on its face. One that is crumpled is turned about z besides, so that
+    /// the plates come from the corners of a rectangle.
     fn turn(&self) -> Option<Turn> {
         let about = match self.action {
             Action::Crumple => UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_4),

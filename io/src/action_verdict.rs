@@ -12,8 +12,8 @@ pub(crate) struct ActionVerdict {
     lowest: f64,
     /// Its extents at the start and at the end along the axes of its mesh, which turn with the sheet, metres.
     sides: [[f64; 3]; 2],
-    /// The root mean square distance of its vertices from their middle at the start, the least of all frames, and that at
-    /// the end, metres.
+    /// The root mean square distance of its vertices from their middle at the start, the least of all frames,
+    /// and that at the end, metres.
     spread: [f64; 3],
     /// Whether it presses on an obstacle at the end.
     is_borne: bool,
@@ -25,8 +25,8 @@ pub(crate) struct ActionVerdict {
     touching: [usize; 2],
     /// The time of the end, seconds.
     t: f64,
-    /// The speed of the fastest vertex, m/s, with the number and the place of the one that moved most in the last frame;
-    /// none of a sheet at rest.
+    /// The speed of the fastest vertex, m/s, with the number and the place of the one that moved most in the
+    /// last frame; none of a sheet at rest.
     moving: Option<(f64, usize, [f64; 3])>,
 }
 

@@ -62,7 +62,8 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
 }
 
-/// The place of a scene for a file that is not written: its paths are relative to that, and no file has its name.
+/// The place of a scene for a file that is not written: its paths are relative to that, and no file has its
+/// name.
 pub(super) fn unwritten(of: &Path) -> PathBuf {
     let name = of.file_name().unwrap_or_default().to_string_lossy();
     of.with_file_name(format!("<scene of {name}>"))
@@ -105,8 +106,8 @@ impl Composing {
         given.cloned().unwrap_or_else(|| default_folder(of))
     }
 
-    /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be written, and a scene
-    /// file among those of the run.
+    /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be
+    /// written, and a scene file among those of the run.
     pub(super) fn begin(&self, of: &Path) -> Done {
         let folder = self.folder(of);
         if let Some(scene) = &self.scene {

@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 pub(crate) struct FaceMoments {
     /// The centre of their area.
     pub(crate) centre: [f64; 3],
-    /// The axis of their normals, weighted by area, of length 1. Its largest component is positive: the orientation of
-    /// the faces does not matter.
+    /// The axis of their normals, weighted by area, of length 1. Its largest component is positive: the
+    /// orientation of the faces does not matter.
     pub(crate) normal: Vector3<f64>,
 }
 

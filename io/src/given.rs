@@ -76,8 +76,8 @@ impl Given {
 }
 
 impl GivenSheet {
-    /// Reads a mesh file or a drawing. The longest side is that of the command line; if that has none, of a mesh `size`
-    /// (metres), and of a drawing its own.
+    /// Reads a mesh file or a drawing. The longest side is that of the command line; if that has none, of a
+    /// mesh `size` (metres), and of a drawing its own.
     pub(super) fn read(
         file: &Path,
         composing: &Composing,

@@ -25,7 +25,8 @@ Examples:
 #[derive(Debug, Args)]
 #[command(before_help = EXAMPLES)]
 pub(crate) struct Info {
-    /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF, VTK), a crease pattern (SVG, CP, OPX) or the folder of a run
+    /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF, VTK), a crease pattern (SVG, CP, OPX) or the
+    /// folder of a run
     file: PathBuf,
     /// Of a scene, change a key before, as `isosheet simulate` does
     #[arg(long = "set", value_name = "KEY=VALUE")]

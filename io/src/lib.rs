@@ -164,8 +164,8 @@ mod tests {
     use super::Cli;
     use clap::CommandFactory;
 
-    /// `-o, --out` is the one way to say where to write. `convert` has the file as its second word besides, as all
-    /// converters have it.
+    /// `-o, --out` is the one way to say where to write. `convert` has the file as its second word besides,
+    /// as all converters have it.
     #[test]
     fn outputs_are_given_by_one_option() {
         for command in Cli::command().get_subcommands() {

@@ -13,9 +13,9 @@ pub(crate) fn open_page(page: &Path) {
     warn(whole.and_then(::open::that_detached), page.display());
 }
 
-/// Opens an address in the browser by a file that leads to it, and which nobody but the user can read: others see
-/// the arguments of processes, and the address has a secret. Where there is no browser, a warning says so. Returns
-/// the file, which ends when it is dropped.
+/// Opens an address in the browser by a file that leads to it, and which nobody but the user can read: others
+/// see the arguments of processes, and the address has a secret. Where there is no browser, a warning says
+/// so. Returns the file, which ends when it is dropped.
 pub(crate) fn open_address(address: &str) -> Option<NamedTempFile> {
     let door = door(address);
     let opened = door.as_ref().map(|file| ::open::that_detached(file.path()));

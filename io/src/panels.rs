@@ -28,8 +28,8 @@ const CLOSED: f64 = 1.0;
 /// At most so far no panels with divided triangles are tried, degrees.
 const WELL: f64 = 5.0;
 
-/// How stiff soft panels are in their plane ([`Panels::Soft`]): for office paper of 0.2 m a hundred newton a metre, of which
-/// paper itself has 3000 times as much, and thirty.
+/// How stiff soft panels are in their plane ([`Panels::Soft`]): for office paper of 0.2 m a hundred newton a
+/// metre, of which paper itself has 3000 times as much, and thirty.
 const SOFT: [u32; 2] = [8000, 2400];
 
 /// The panels that are tried after rigid ones, and how far creases may be from their angles, degrees in the

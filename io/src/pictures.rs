@@ -50,7 +50,8 @@ pub(crate) enum FrameChoice {
     },
 }
 
-/// Every how many frames, whose times are these (seconds), browsers show one in real time: fifty a second at most.
+/// Every how many frames, whose times are these (seconds), browsers show one in real time: fifty a second at
+/// most.
 pub(super) fn shown_by_browsers(times: &[f64]) -> usize {
     const MOST: f64 = 50.0;
     let rate = match times {

@@ -56,8 +56,8 @@ Examples:
 pub(crate) struct Resume {
     /// The folder of the run
     dir: PathBuf,
-    /// Let the run go on until this time (seconds), beyond the `stop.time` of its scene, as if the scene had had
-    /// it from the start
+    /// Let the run go on until this time (seconds), beyond the `stop.time` of its scene, as if the scene had
+    /// had it from the start
     #[arg(long, value_name = "T")]
     until: Option<f64>,
     #[command(flatten)]
@@ -91,8 +91,8 @@ pub(super) fn threads() -> RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=MOST_THREADS)
 }
 
-/// Computes with a number of threads from now on, of which this one is the first: it would otherwise sleep while others
-/// do what it shares with them.
+/// Computes with a number of threads from now on, of which this one is the first: it would otherwise sleep
+/// while others do what it shares with them.
 pub(super) fn use_threads(number: u16) -> Done {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(number));
     let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
@@ -123,7 +123,8 @@ impl How {
         self.show(folder, existing, |progress| run(scene, folder, progress))
     }
 
-    /// Runs, shows the progress and says how it ended. An `existing` run of the folder was deleted before, or continued.
+    /// Runs, shows the progress and says how it ended. An `existing` run of the folder was deleted before, or
+    /// continued.
     pub(super) fn show(
         &self,
         folder: &Path,

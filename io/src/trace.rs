@@ -21,7 +21,8 @@ impl TraceFile {
     /// The file, in which a trace of this name stays until the run begins.
     ///
     /// # Errors
-    /// [`Failure`] if the file cannot be written, or if there is another file of this name, such as the scene.
+    /// [`Failure`] if the file cannot be written, or if there is another file of this name, such as the
+    /// scene.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
         if is_another_file(path) {
             let message = format!("{} is a file that is no trace", path.display());
@@ -38,9 +39,9 @@ impl TraceFile {
         trace.check().map(|()| trace)
     }
 
-    /// The run begins after so many steps of earlier processes. Of one that is at its start the file has no steps yet:
-    /// its first line gets the constants of the solver, and an earlier trace is replaced. That of a run which goes on
-    /// is continued.
+    /// The run begins after so many steps of earlier processes. Of one that is at its start the file has no
+    /// steps yet: its first line gets the constants of the solver, and an earlier trace is replaced. That of
+    /// a run which goes on is continued.
     pub(crate) fn begin(&self, steps: u64) {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(open) = &mut *file

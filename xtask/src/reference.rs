@@ -1,5 +1,6 @@
-//! What is made of the code: `docs/scene.md` and `docs/scene.schema.json` of the structs that read scenes, the
-//! keys of scenes in the stubs of the Python module, and `docs/materials.md` of the catalogue of materials.
+//! What is made of the code: `docs/scene.md` and `docs/scene.schema.json` of the structs that read scenes,
+//! the keys of scenes in the stubs of the Python module, and `docs/materials.md` of the catalogue of
+//! materials.
 
 mod materials;
 

@@ -99,7 +99,7 @@ impl SurfacePoints {
         })
     }
 
-    /// These points, and more that are carried after them.
+    /// With more carried points, after those that are there.
     ///
     /// # Errors
     /// [`SurfacePointsError`].

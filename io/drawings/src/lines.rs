@@ -35,8 +35,8 @@ pub struct Drawing {
     pub lines: Vec<DrawnLine>,
     /// How they are drawn.
     pub pens: Vec<Pen>,
-    /// What is no line, such as texts and images, or is drawn in a colour that is not understood, and was left
-    /// out, with its number.
+    /// What is no line, such as texts and images, or is drawn in a colour that is not understood, and was
+    /// left out, with its number.
     pub left_out: BTreeMap<String, usize>,
     /// What a unit of the file was taken for, where the file does not say it.
     pub assumed_unit: Option<&'static str>,

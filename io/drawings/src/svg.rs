@@ -37,8 +37,8 @@ pub enum Areas {
     LeftOut,
 }
 
-/// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
-/// points upwards, from the lower edge of the page.
+/// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given.
+/// Its y axis points upwards, from the lower edge of the page.
 ///
 /// # Errors
 /// [`DataError`] for a text that is no SVG, or asks for more than a file of its length may.
@@ -223,8 +223,8 @@ impl Reader<'_, '_> {
             .try_for_each(|child| self.element(child, state))
     }
 
-    /// Draws what is in an element with a viewport of its own, whose size `sized` says where it has one, and otherwise the
-    /// element itself.
+    /// Draws what is in an element with a viewport of its own, whose size `sized` says where it has one, and
+    /// otherwise the element itself.
     fn nested(
         &mut self,
         node: Node<'_, '_>,
@@ -329,8 +329,8 @@ impl Reader<'_, '_> {
 /// The bytes for a curve, as it is read and as it is drawn.
 const MEMORY_OF_CURVE: usize = size_of::<DrawnLine>() + size_of::<PlaneCurve>();
 
-/// The bytes for a curve of an element that is used, for which the file has no text: as many as it takes until it is a
-/// part of a mesh, with its chords, their boxes and its pieces.
+/// The bytes for a curve of an element that is used, for which the file has no text: as many as it takes
+/// until it is a part of a mesh, with its chords, their boxes and its pieces.
 const MEMORY_OF_USED_CURVE: usize = 4 * MEMORY_OF_CURVE;
 
 fn memory_of_name(name: &str) -> usize {

@@ -5,8 +5,8 @@ use crate::DataError;
 /// Every file may cost so much, bytes: less than a program that shows an empty window takes.
 const LEAST: usize = 64 << 20;
 
-/// Bytes for each byte of a file: its shortest line has two characters and becomes a curve, which takes 160 bytes
-/// while it is read.
+/// Bytes for each byte of a file: its shortest line has two characters and becomes a curve, which takes 160
+/// bytes while it is read.
 const TIMES: usize = 100;
 
 /// The bytes or steps that what is made of a file may still take.

@@ -20,7 +20,8 @@ pub fn is_unfinished(name: &std::ffi::OsStr) -> bool {
     name.starts_with(PREFIX) && name.ends_with(SUFFIX)
 }
 
-/// Creates the missing parent folders of `path` and returns the folder; refuses a path of something else than a file.
+/// Creates the missing parent folders of `path` and returns the folder; refuses a path of something else than
+/// a file.
 pub fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
     if path.file_name().is_none() {
         let path = path.to_owned();

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// A cell that no spreadsheet takes for a formula: a text that begins like one gets an apostrophe before it, which
-/// spreadsheets do not show. Numbers stay as they are.
+/// A cell that no spreadsheet takes for a formula: a text that begins like one gets an apostrophe before it,
+/// which spreadsheets do not show. Numbers stay as they are.
 pub fn cell(text: &str) -> Cow<'_, str> {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']);
     match is_formula && text.parse::<f64>().is_err() {

@@ -24,8 +24,8 @@ impl Advice for ReadError {
     }
 }
 
-/// A file could not be written; nothing is left under its name that was not there before. Or one that is to be
-/// replaced could not be removed.
+/// A file could not be written; nothing is left under its name that was not there before. Or one that is to
+/// be replaced could not be removed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WriteError {

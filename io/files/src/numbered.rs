@@ -42,8 +42,9 @@ impl NumberedFiles {
         (name == OsStr::new(&self.name(number))).then_some(number)
     }
 
-    /// Removes the files of other numbers than these (ascending), which an earlier export has left, and returns
-    /// how many there were. Files of other names and folders stay. For exports whose own files are complete.
+    /// Removes the files of other numbers than these (ascending), which an earlier export has left, and
+    /// returns how many there were. Files of other names and folders stay. For exports whose own files are
+    /// complete.
     ///
     /// # Errors
     /// [`FileError`] if the folder cannot be listed or a file cannot be removed.

@@ -1,7 +1,7 @@
 //! XML files, which are read in memory and time in proportion to their length.
 //!
-//! The parser copies an entity wherever it is named, compares each attribute with the others of its element, and each
-//! prefix of a namespace with the others around it. All of this is counted before it begins.
+//! The parser copies an entity wherever it is named, compares each attribute with the others of its element,
+//! and each prefix of a namespace with the others around it. All of this is counted before it begins.
 
 use roxmltree::{Document, ParsingOptions};
 use std::collections::{HashMap, HashSet};
@@ -44,14 +44,15 @@ pub enum XmlError {
     Prefixes,
 }
 
-/// Each reference to an entity is compared with so many names at most; Illustrator defines some ten for namespaces, and
-/// one for each style of its lines.
+/// Each reference to an entity is compared with so many names at most; Illustrator defines some ten for
+/// namespaces, and one for each style of its lines.
 const MOST_ENTITIES: usize = 1000;
 
 /// Each attribute is compared with so many others of its element at most; SVG knows some 300.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// Each element with a namespace compares the prefixes around it with each other; drawing programs have some ten.
+/// Each element with a namespace compares the prefixes around it with each other; drawing programs have some
+/// ten.
 const MOST_PREFIXES: usize = 100;
 
 /// The parser follows entities in entities so deep.
@@ -60,8 +61,8 @@ const DEEPEST: usize = 10;
 /// Bytes that entities may become in any file.
 const LEAST: u64 = 1 << 17;
 
-/// Bytes that entities may become for each byte of a file: the name of a style of Illustrator with its path takes 38
-/// bytes, and the style 106.
+/// Bytes that entities may become for each byte of a file: the name of a style of Illustrator with its path
+/// takes 38 bytes, and the style 106.
 const TIMES: u64 = 4;
 
 /// Parses XML.
@@ -108,7 +109,8 @@ fn check_entities(text: &str) -> Result<(), XmlError> {
     }
 }
 
-/// The names of the entities that a file defines with their texts. (Of two with one name the longer one is taken.)
+/// The names of the entities that a file defines with their texts. (Of two with one name the longer one is
+/// taken.)
 fn definitions(text: &str) -> HashMap<&str, &str> {
     let mut found: HashMap<&str, &str> = HashMap::new();
     for (place, mark) in text.match_indices("<!ENTITY") {
@@ -138,8 +140,8 @@ fn references(text: &str) -> impl Iterator<Item = &str> {
         .map(|(name, _)| name)
 }
 
-/// Refuses elements with too many attributes, and files with too many prefixes. No attribute has a `<` in it, so that
-/// what stands in one element ends before the next `<` at the latest.
+/// Refuses elements with too many attributes, and files with too many prefixes. No attribute has a `<` in it,
+/// so that what stands in one element ends before the next `<` at the latest.
 fn check_elements(text: &str) -> Result<(), XmlError> {
     let mut prefixes = HashSet::new();
     for element in text.split('<').skip(1) {

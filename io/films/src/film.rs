@@ -67,8 +67,8 @@ impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, for angles that are not finite or
-    /// an elevation beyond 90 degrees, and for a range whose width is 0 or too small for a normal number.
+    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, for angles that are not finite
+    /// or an elevation beyond 90 degrees, and for a range whose width is 0 or too small for a normal number.
     pub fn validate(&self) -> Result<(), PictureError> {
         let (width, height) = (self.width.unwrap_or(self.height), self.height);
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
@@ -148,8 +148,8 @@ impl<'a> Film<'a> {
     /// The given frames of a run.
     ///
     /// # Errors
-    /// [`PictureError::Data`] without frames or for a frame that the run has not, [`PictureError::Options`] for pictures that
-    /// memory does not hold, and those of [`FilmOptions::validate`].
+    /// [`PictureError::Data`] without frames or for a frame that the run has not, [`PictureError::Options`]
+    /// for pictures that memory does not hold, and those of [`FilmOptions::validate`].
     pub fn new(
         recording: &'a Recording,
         frames: Vec<usize>,

@@ -60,9 +60,9 @@ impl Film<'_> {
             .any(|format| extension.eq_ignore_ascii_case(format))
     }
 
-    /// All pictures in real time as a film, whose format the extension of the file says, encoded by ffmpeg. A file
-    /// that is there is replaced once the film is complete. `drawn` is told the number of pictures that are drawn, from
-    /// whatever thread.
+    /// All pictures in real time as a film, whose format the extension of the file says, encoded by ffmpeg. A
+    /// file that is there is replaced once the film is complete. `drawn` is told the number of pictures that
+    /// are drawn, from whatever thread.
     ///
     /// # Errors
     /// [`FilmError`] if a frame cannot be drawn, or ffmpeg is not there or fails.
@@ -116,7 +116,8 @@ impl Film<'_> {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("gif"))
         {
-            // What all players take: colours at half the resolution, and so an even number of pixels each way.
+            // What all players take: colours at half the resolution, and so an even number of pixels each
+            // way.
             command.args([
                 "-vf",
                 "pad=ceil(iw/2)*2:ceil(ih/2)*2",

@@ -29,8 +29,8 @@ impl Quantity {
     /// another range.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for a name that no quantity has, with those that there are, and for a range that makes
-    /// no sense.
+    /// [`PictureError::Options`] for a name that no quantity has, with those that there are, and for a range
+    /// that makes no sense.
     pub(super) fn of(
         recording: &Recording,
         name: &str,

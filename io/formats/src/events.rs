@@ -29,7 +29,8 @@ pub enum EventChange {
     Torn,
 }
 
-/// Something that was taken up or released at the end of a step. The field order is the column order of the file.
+/// Something that was taken up or released at the end of a step. The field order is the column order of the
+/// file.
 ///
 /// ```
 /// use isosheet_formats::{EventChange, EventKind, EventRow, EventWriter, read_events};

@@ -140,8 +140,8 @@ pub struct Exported {
     pub files: Vec<PathBuf>,
     /// The frames of the trajectory that they have.
     pub frames: Vec<usize>,
-    /// How many files of an earlier export were removed: numbered files by the same names, of frames that this
-    /// one has not.
+    /// How many files of an earlier export were removed: numbered files by the same names, of frames that
+    /// this one has not.
     pub removed: usize,
 }
 

@@ -194,8 +194,8 @@ impl<R: Row> RowWriter<R> {
         Ok(history)
     }
 
-    /// Continues a history after what was written of it, an earlier value of [`RowWriter::written`]; what follows
-    /// is cut off.
+    /// Continues a history after what was written of it, an earlier value of [`RowWriter::written`]; what
+    /// follows is cut off.
     ///
     /// # Errors
     /// [`FileError::Read`] if the file cannot be opened, does not have as many bytes, or these are others.

@@ -19,8 +19,8 @@ pub enum LoadKind {
     Guide,
 }
 
-/// The load of a support, an obstacle or a body at the end of a step. The field order is the column order of the
-/// file.
+/// The load of a support, an obstacle or a body at the end of a step. The field order is the column order of
+/// the file.
 ///
 /// ```
 /// use isosheet_formats::{LoadKind, LoadRow, LoadWriter, read_loads};
@@ -49,8 +49,8 @@ pub struct LoadRow {
     /// Force, newtons.
     pub force: [f64; 3],
     /// Torque, newton metres: on an obstacle about the origin of its own frame, on a body about its centre of
-    /// mass, of a guide about the point of the hinge or the joint or on a slider about the centre of mass, of a
-    /// support about the mean of the places of its vertices.
+    /// mass, of a guide about the point of the hinge or the joint or on a slider about the centre of mass, of
+    /// a support about the mean of the places of its vertices.
     pub torque: [f64; 3],
 }
 

@@ -135,8 +135,8 @@ impl Trajectory {
         Ok(())
     }
 
-    /// Checks a frame after one at the time `before`; those after the first one have the quantities that `has`
-    /// names.
+    /// Checks a frame after one at the time `before`; those after the first one have the quantities that
+    /// `has` names.
     fn check(
         &self,
         frame: &MotionFrame<'_>,
@@ -345,28 +345,28 @@ impl Trajectory {
         self.values(FrameQuantity::PlasticCurvatures, k)
     }
 
-    /// The bend of the faces beside each crease in a frame (length E, radians, positive for valleys, 0 at other
-    /// edges): the angle between the two faces at a crease ([`fold_angle`](isosheet_mesh::fold_angle)) is the
-    /// kink of the crease and this bend. `None` when no crease is in a sheet that bends, or there is no such
-    /// frame.
+    /// The bend of the faces beside each crease in a frame (length E, radians, positive for valleys, 0 at
+    /// other edges): the angle between the two faces at a crease ([`fold_angle`](isosheet_mesh::fold_angle))
+    /// is the kink of the crease and this bend. `None` when no crease is in a sheet that bends, or there is
+    /// no such frame.
     pub fn crease_bends(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::CreaseBends, k)
     }
 
-    /// The unit vector along the ruling of each face in a frame (length 3F), zero where a face has none; `None` where
-    /// they were not asked for, or there is no such frame.
+    /// The unit vector along the ruling of each face in a frame (length 3F), zero where a face has none;
+    /// `None` where they were not asked for, or there is no such frame.
     pub fn rulings(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::Rulings, k)
     }
 
-    /// The principal curvature across the ruling of each face in a frame (length F, 1/m, positive for valleys), 0
-    /// where a face has none; `None` as of [`Trajectory::rulings`].
+    /// The principal curvature across the ruling of each face in a frame (length F, 1/m, positive for
+    /// valleys), 0 where a face has none; `None` as of [`Trajectory::rulings`].
     pub fn ruling_curvatures(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::RulingCurvatures, k)
     }
 
-    /// The Gauss curvature at each vertex in a frame besides that of the rest shape (length V, 1/m2); `None` as of
-    /// [`Trajectory::rulings`].
+    /// The Gauss curvature at each vertex in a frame besides that of the rest shape (length V, 1/m2); `None`
+    /// as of [`Trajectory::rulings`].
     pub fn gauss_curvatures(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::GaussCurvatures, k)
     }

@@ -3,13 +3,14 @@
 //! # More than these lines
 //!
 //! - Meshes of files or of one's own triangles: [`io::read_sheet`], [`mesh::Sheet::new`].
-//! - Materials of one's own: [`dynamics::Material`]. Rods in place of an elastic sheet, creases, and bends that
-//!   stay: [`dynamics::SheetOfMaterial`].
+//! - Materials of one's own: [`dynamics::Material`]. Rods in place of an elastic sheet, creases, and bends
+//!   that stay: [`dynamics::SheetOfMaterial`].
 //! - Supports that move, vertices on curves and surfaces: [`dynamics::SheetModel::with_moving_pin`],
 //!   [`dynamics::SheetModel::with_constraint`].
 //! - Obstacles that are turned or move: [`dynamics::RigidDisplacement`], [`collide::Obstacle::new`].
 //! - Distances, continuous collision detection, shapes of one's own: [`geometry`], [`geometry::Form`].
-//! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`], [`collide::ContactOptions`].
+//! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`],
+//!   [`collide::ContactOptions`].
 //! - Loads, air, potentials and forces of one's own: [`dynamics::SheetModel`], [`dynamics::Potential`],
 //!   [`dynamics::Force`].
 //! - Lift and a wake: [`attached_flow::AttachedFlow`].
@@ -19,11 +20,11 @@
 //!   [`dynamics::Simulation::contact_forces`].
 //! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`charts`].
 //! - Meshes and series of frames as files: [`io::write_mesh`], [`io::write_series`].
-//! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run` and
-//!   `io::command`.
+//! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run`
+//!   and `io::command`.
 //!
-//! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take arrays;
-//! its version is re-exported as [`nalgebra`].
+//! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take
+//! arrays; its version is re-exported as [`nalgebra`].
 
 pub mod io;
 

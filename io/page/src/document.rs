@@ -82,8 +82,8 @@ struct SeriesData<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// The document of the frames of a replay, which were validated; none where it is longer than `most` bytes
-    /// for sure. Positions and values of fields come from `frames`, everything else from the replay.
+    /// The document of the frames of a replay, which were validated; none where it is longer than `most`
+    /// bytes for sure. Positions and values of fields come from `frames`, everything else from the replay.
     pub(super) fn new<M: Motion<Error: From<DataError>>>(
         replay: &'a Replay,
         frames: &M,

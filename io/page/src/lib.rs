@@ -9,14 +9,14 @@
 //! # What the page shows
 //! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by
 //! height and by every [`Field`]. The range of colours is that of the whole run; of the fold angles above a
-//! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains. Fields of
-//! either sign ([`Scale::Signed`]) have zero in the middle of the colours, magnitudes ([`Scale::Magnitude`])
-//! at their lower end; the range of either has 98 % of the values that are not zero. The camera frames the
-//! rest shape, the first frame, the bodies, and where the sheet usually is (90 % of each coordinate over all
-//! frames) unless this is far away. Pins are marked. Bodies are drawn where their poses say: solid,
-//! see-through or not at all, as the reader chooses. The rest shape is shown on demand. What is under the
-//! pointer (vertex, edge, face) is named with its fold angle and values. A click in a plot goes to that time.
-//! Space plays, arrow keys step. The part of the address after `#` makes choices, as in
+//! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains. Fields
+//! of either sign ([`Scale::Signed`]) have zero in the middle of the colours, magnitudes
+//! ([`Scale::Magnitude`]) at their lower end; the range of either has 98 % of the values that are not zero.
+//! The camera frames the rest shape, the first frame, the bodies, and where the sheet usually is (90 % of
+//! each coordinate over all frames) unless this is far away. Pins are marked. Bodies are drawn where their
+//! poses say: solid, see-through or not at all, as the reader chooses. The rest shape is shown on demand.
+//! What is under the pointer (vertex, edge, face) is named with its fold angle and values. A click in a plot
+//! goes to that time. Space plays, arrow keys step. The part of the address after `#` makes choices, as in
 //! `page.html#frame=20&colour=fold&rest=1`; colours are `plain`, `fold`, `height`, and `field-K` for field K
 //! from 0; `bodies` is `solid`, `glass` or `hidden`.
 //!

@@ -19,8 +19,8 @@ pub(super) struct Packed {
     data: String,
 }
 
-/// Packs rows of integers below `2^(8 bytes)`, which come one after the other and once for each byte plane, with
-/// the order of differences that makes the shortest text.
+/// Packs rows of integers below `2^(8 bytes)`, which come one after the other and once for each byte plane,
+/// with the order of differences that makes the shortest text.
 ///
 /// Differences are taken modulo `2^(8 bytes)` from the rows before, where rows before the first are zero, and
 /// mapped to unsigned integers by `0, -1, 1, -2, ... -> 0, 1, 2, 3, ...` (zigzag).

@@ -40,7 +40,8 @@ impl Range {
         }
     }
 
-    /// The lower end, and a step that reaches from it to the upper one in `count` steps; 1 when they are equal.
+    /// The lower end, and a step that reaches from it to the upper one in `count` steps; 1 when they are
+    /// equal.
     fn low_and_step(self, count: f64) -> [f64; 2] {
         let [low, high] = self.ends();
         let step = (high - low) / count;
@@ -94,8 +95,8 @@ impl FieldScale {
         v.abs() <= NEGLIGIBLE * self.largest
     }
 
-    /// The number that the smallest integer stands for, a decimal logarithm on a logarithmic scale, and what a
-    /// step of one adds.
+    /// The number that the smallest integer stands for, a decimal logarithm on a logarithmic scale, and what
+    /// a step of one adds.
     pub(super) fn low_and_step(&self) -> [f64; 2] {
         self.range.low_and_step(match self.scale {
             Scale::Linear => LARGEST,

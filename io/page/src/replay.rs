@@ -36,7 +36,8 @@ pub struct Replay {
     pub faces: Vec<[u32; 3]>,
     /// Time of each frame (length T, ascending).
     pub times: Vec<f64>,
-    /// Of a run that folds a crease pattern the part of the folding in each frame, from 0 to 1 (length T); empty for others.
+    /// Of a run that folds a crease pattern the part of the folding in each frame, from 0 to 1 (length T);
+    /// empty for others.
     pub folded: Vec<f64>,
     /// Positions in each frame (T lists of length 3V).
     pub positions: Vec<Vec<f64>>,
@@ -59,8 +60,8 @@ pub struct Replay {
     pub fields: Vec<Field>,
     /// The number of the field that the sheet is coloured by at first; none leaves it plain.
     pub colour: Option<usize>,
-    /// The number of the field that has the bends beside creases (at creases, degrees, [`Scale::Signed`]), which
-    /// the page takes out of the fold angles that it shows; none where nothing bends beside creases.
+    /// The number of the field that has the bends beside creases (at creases, degrees, [`Scale::Signed`]),
+    /// which the page takes out of the fold angles that it shows; none where nothing bends beside creases.
     ///
     /// [`Scale::Signed`]: super::Scale::Signed
     pub bends: Option<usize>,

@@ -11,9 +11,9 @@ use rayon::prelude::*;
 /// Programs that know no animations show the first picture.
 ///
 /// # Errors
-/// [`PictureError::Data`] for no picture, or for one of another size, [`PictureError::Options`] for a size that memory does
-/// not hold,
-/// [`PictureError::Png`] if the file cannot be made, and whatever `picture` returns.
+/// [`PictureError::Data`] for no picture, or for one of another size, [`PictureError::Options`] for a size
+/// that memory does not hold, [`PictureError::Png`] if the file cannot be made, and whatever `picture`
+/// returns.
 pub fn animated_png(
     size: [usize; 2],
     delay: u16,

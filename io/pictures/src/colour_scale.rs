@@ -76,8 +76,8 @@ impl ColourScale {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for an end that is not finite, for ends in the wrong order, and for a logarithmic scale
-    /// with an end that is not positive.
+    /// [`PictureError::Options`] for an end that is not finite, for ends in the wrong order, and for a
+    /// logarithmic scale with an end that is not positive.
     pub fn validate(&self) -> Result<(), PictureError> {
         let [low, high] = self.range;
         let wrong = |message: String, remedy, value: f64| {

@@ -5,8 +5,8 @@ use super::error::PictureError;
 use super::raster::MEMORY_OF_COLUMN;
 use isosheet_files::memory;
 
-/// Bytes for a pixel of a picture: its light, twice its three bytes as they are listed, and these bytes as the file is
-/// made of them, filtered, compressed and gathered.
+/// Bytes for a pixel of a picture: its light, twice its three bytes as they are listed, and these bytes as
+/// the file is made of them, filtered, compressed and gathered.
 const MEMORY_OF_PIXEL: u64 = (size_of::<Light>() + 2 * 3 + 3 * 3) as u64;
 
 /// As many pictures of a size (pixels) as may be drawn at a time, `most` at most.

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
 
-/// Faces that are nearer than this part of the reach lie on the point: the other layer of a seam or of a flat fold, which
-/// is either hidden by the point or hides it.
+/// Faces that are nearer than this part of the reach lie on the point: the other layer of a seam or of a flat
+/// fold, which is either hidden by the point or hides it.
 const TOUCHING: f64 = 2e-3;
 
 /// How far in from a crease a point lies, as part of the way to the centroid of its faces: a point on the

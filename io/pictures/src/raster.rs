@@ -38,7 +38,8 @@ pub(super) struct Stroke {
     pub(super) cover: f32,
     /// How much nearer the line counts than it is, where a face is seen that has a vertex with it in common.
     pub(super) lift: f64,
-    /// How much farther the line counts than it is, where another face is seen: what lies on it hides all of its width.
+    /// How much farther the line counts than it is, where another face is seen: what lies on it hides all of
+    /// its width.
     pub(super) sink: f64,
 }
 
@@ -345,7 +346,8 @@ mod tests {
         }
     }
 
-    /// A face that lies on an edge of a body hides it, however little it is in front; the faces of the body do not.
+    /// A face that lies on an edge of a body hides it, however little it is in front; the faces of the body
+    /// do not.
     #[test]
     fn what_lies_on_an_edge_hides_it() {
         for (vertices, is_seen) in [([3, 4], false), ([0, 1], true)] {

@@ -154,8 +154,8 @@ impl Mesh {
         Self::of(py, &mesh)
     }
 
-    /// A mesh of a file: OBJ, OFF, STL, PLY, FOLD, glTF or VTK. `scale` is the length of one unit of the file in
-    /// metres.
+    /// A mesh of a file: OBJ, OFF, STL, PLY, FOLD, glTF or VTK. `scale` is the length of one unit of the file
+    /// in metres.
     #[staticmethod]
     #[pyo3(signature = (path, scale = 1.0))]
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
@@ -164,8 +164,8 @@ impl Mesh {
         Self::of(py, &scene::Mesh::File(file))
     }
 
-    /// Writes the mesh to a file, whose format the extension says: .obj, .off, .ply or .fold with all digits, .stl,
-    /// .glb or .usda.
+    /// Writes the mesh to a file, whose format the extension says: .obj, .off, .ply or .fold with all digits,
+    /// .stl, .glb or .usda.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let written = py.detach(|| {
             let mut still = Trajectory::new(&self.sheet);

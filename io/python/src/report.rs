@@ -58,8 +58,8 @@ values_of! {
         iterations: usize = report.iterations;
         /// Matrix factorisations.
         factorisations: usize = report.factorisations;
-        /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean square over
-        /// the vertices; None for methods without an estimate.
+        /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean
+        /// square over the vertices; None for methods without an estimate.
         error: Option<f64> = report.error;
         /// Largest relative residual of the sub-steps.
         residual: f64 = report.residual;
@@ -87,8 +87,8 @@ values_of! {
         violation: Option<f64> = report.violation;
         /// The support that asks for more than the rods allow, where the step ended taut.
         taut: Option<String> = report.taut.as_ref().map(|t| t.by.to_string());
-        /// What the hardest sub-step needed: "newton", "globalised", "`branch_seeded`", "fallback", "chart" or
-        /// "rebased".
+        /// What the hardest sub-step needed: "newton", "globalised", "`branch_seeded`", "fallback", "chart"
+        /// or "rebased".
         path: String = path(report.outcome).to_owned();
     }
 }

@@ -231,9 +231,9 @@ impl Run {
         self.numbers(py, |k| self.recording.trajectory.plastic_angles(k))
     }
 
-    /// Bends of the faces beside creases in the frames, radians, positive for valleys, of shape (T, E), 0 at other
-    /// edges: the angle between the faces at a crease is its fold angle and this bend. None where no crease is in a
-    /// sheet that bends.
+    /// Bends of the faces beside creases in the frames, radians, positive for valleys, of shape (T, E), 0 at
+    /// other edges: the angle between the faces at a crease is its fold angle and this bend. None where no
+    /// crease is in a sheet that bends.
     #[getter]
     fn crease_bends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.numbers(py, |k| self.recording.trajectory.crease_bends(k))
@@ -249,10 +249,10 @@ impl Run {
         self.tuples(py, 2, |k| self.recording.trajectory.plastic_curvatures(k))
     }
 
-    /// Unit vectors along the rulings of the faces in the frames, of shape (T, F, 3): the straight lines of a bent
-    /// sheet, the direction of the principal curvature that is smaller in size, with the component of largest size
-    /// positive. Zero where a face has none: where it is not bent beyond noise, or alike in all directions. They are
-    /// made of the positions whenever they are asked for.
+    /// Unit vectors along the rulings of the faces in the frames, of shape (T, F, 3): the straight lines of a
+    /// bent sheet, the direction of the principal curvature that is smaller in size, with the component of
+    /// largest size positive. Zero where a face has none: where it is not bent beyond noise, or alike in all
+    /// directions. They are made of the positions whenever they are asked for.
     #[getter]
     fn rulings<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
         let Some(all) = py.detach(|| self.recording.rulings()) else {
@@ -262,7 +262,8 @@ impl Run {
         self.tuples(py, 3, |k| frames.get(k).copied())
     }
 
-    /// Principal curvatures across the rulings, 1/m, positive for valleys, of shape (T, F); 0 where a face has none.
+    /// Principal curvatures across the rulings, 1/m, positive for valleys, of shape (T, F); 0 where a face
+    /// has none.
     #[getter]
     fn ruling_curvatures<'py>(
         &self,
@@ -275,8 +276,8 @@ impl Run {
         self.numbers(py, |k| frames.get(k).copied())
     }
 
-    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the sheet is
-    /// from developable.
+    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the
+    /// sheet is from developable.
     #[getter]
     fn gauss_curvatures<'py>(
         &self,
@@ -327,10 +328,10 @@ impl Run {
         Ok(columns)
     }
 
-    /// What each `[[measure]]` of the scene shows by its name, and of each gas "gas[0].pressure" (pascals above
-    /// vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit of its
-    /// quantity, at the start and at the end of every step: at the times of `history["time"]`. Of a run that is not
-    /// complete the last one may be missing.
+    /// What each `[[measure]]` of the scene shows by its name, and of each gas "gas[0].pressure" (pascals
+    /// above vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit
+    /// of its quantity, at the start and at the end of every step: at the times of `history["time"]`. Of a
+    /// run that is not complete the last one may be missing.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
@@ -532,8 +533,9 @@ impl Run {
         shown.write(py, &path, Kind::Picture)
     }
 
-    /// Writes shaded pictures of the frames in real time as an animated PNG file, which browsers and notebooks
-    /// show, or where ffmpeg is installed as an .mp4, .webm or .gif file: ``run.film("cloth.apng")``.
+    /// Writes shaded pictures of the frames in real time as an animated PNG file, which browsers and
+    /// notebooks show, or where ffmpeg is installed as an .mp4, .webm or .gif file:
+    /// ``run.film("cloth.apng")``.
     ///
     /// every and fps are those of `save`, height, view, colour and range those of `picture`.
     #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None, colour = None, range = None))]

@@ -205,8 +205,8 @@ impl Simulation {
 
     /// Advances by `h` seconds, by default the step of the scene, and returns a `StepReport`.
     ///
-    /// Raises `ValueError` for a length that is not positive; `StepFailed`, which has key, time and advice. Then and
-    /// after Ctrl-C the state is that of the last accepted sub-step.
+    /// Raises `ValueError` for a length that is not positive; `StepFailed`, which has key, time and advice.
+    /// Then and after Ctrl-C the state is that of the last accepted sub-step.
     #[pyo3(signature = (h = None))]
     fn step(&self, py: Python<'_>, h: Option<f64>) -> PyResult<Option<StepReport>> {
         if let Some(h) = h.filter(|h| !(h.is_finite() && *h > 0.0)) {
@@ -220,9 +220,8 @@ impl Simulation {
     ///
     /// each: a function that is called after every step with its report, and ends the run by returning True.
     ///
-    /// Returns the reports. Raises `ValueError` for a time that is no number, and takes no step for one that has
-    /// passed. Ctrl-C raises
-    /// `KeyboardInterrupt` within a step or after it, and the run can go on.
+    /// Returns the reports. Raises `ValueError` for a time that is no number, and takes no step for one that
+    /// has passed. Ctrl-C raises `KeyboardInterrupt` within a step or after it, and the run can go on.
     #[pyo3(signature = (until, each = None))]
     fn run(
         &self,

@@ -5,9 +5,9 @@ use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The largest sums of all forces and torques (those of supports, contact, weight and loads, less the rate of the
-/// momentum), beside the largest forces and torques of the supports. Sums are zero where all forces are right, to the
-/// tolerance of the steps.
+/// The largest sums of all forces and torques (those of supports, contact, weight and loads, less the rate of
+/// the momentum), beside the largest forces and torques of the supports. Sums are zero where all forces are
+/// right, to the tolerance of the steps.
 ///
 /// Of sheets without rods it is that of every step with BDF2 and implicit Euler, of others that of the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

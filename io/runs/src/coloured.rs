@@ -17,7 +17,7 @@ impl Recording {
         fields.into_iter().map(|field| field.head.name).collect()
     }
 
-    /// These quantities, frame by frame.
+    /// Of some quantities, frame by frame.
     pub fn coloured(&self) -> Vec<FrameField<'_>> {
         let series = self.series(&SeriesOptions::default()).ok();
         let mut fields: Vec<_> = series.map(fold_angle).into_iter().collect();

@@ -165,8 +165,8 @@ impl Control {
     }
 }
 
-/// When what went in turn as several functions changed abruptly: the first one from the beginning, and each that replaced
-/// another one from its time on.
+/// When what went in turn as several functions changed abruptly: the first one from the beginning, and each
+/// that replaced another one from its time on.
 fn kinks(first: Vec<f64>, further: impl Iterator<Item = (f64, Vec<f64>)>) -> Vec<f64> {
     let mut all = first;
     for (begin, breaks) in further {

@@ -13,17 +13,17 @@ pub struct ElasticSummary {
     pub stiffness: f64,
     /// Limit of the strain; where sheets have several, that of the face which came nearest to its own.
     pub limit: f64,
-    /// Largest strain of a face in any step, the norm of Green's strain; where sheets have several limits, that of
-    /// the face which came nearest to its own.
+    /// Largest strain of a face in any step, the norm of Green's strain; where sheets have several limits,
+    /// that of the face which came nearest to its own.
     pub strain: f64,
     /// Part of the stretching in the elastic energy at the end, from 0 to 1.
     pub share: f64,
-    /// Part of the slack of bends in the elastic energy at the end, from 0 to 1: the error of the energy that comes of
-    /// the mesh where a sheet bends and is pulled.
+    /// Part of the slack of bends in the elastic energy at the end, from 0 to 1: the error of the energy that
+    /// comes of the mesh where a sheet bends and is pulled.
     #[serde(default)]
     pub slack: f64,
-    /// Part of the area at the end whose strain is beyond half of its limit, from 0 to 1: there the limit acts beside the
-    /// stiffness of the material.
+    /// Part of the area at the end whose strain is beyond half of its limit, from 0 to 1: there the limit
+    /// acts beside the stiffness of the material.
     #[serde(default)]
     pub at_limit: f64,
     /// Where the sheet bent most over the size of a face, if it bends.
@@ -91,8 +91,8 @@ impl Bend {
         self.angle * self.angle / 24.0
     }
 
-    /// Part by which forces are wrong that such a bend balances, at most: a quarter of the square of the angle, as in
-    /// `cargo xtask validation` (a strip between two plates, and one that is pushed together).
+    /// Part by which forces are wrong that such a bend balances, at most: a quarter of the square of the
+    /// angle, as in `cargo xtask validation` (a strip between two plates, and one that is pushed together).
     pub fn force_error(&self) -> f64 {
         0.25 * self.angle * self.angle
     }

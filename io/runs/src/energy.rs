@@ -23,8 +23,8 @@ pub struct EnergySummary {
     /// Largest energy that was exchanged: kinetic energy, change of the potential energy, work, or what
     /// damping, friction and yielding took, joules.
     pub largest_exchange: f64,
-    /// Largest energy that the round-off of the positions looks like, joules: the change of the potential energy at the
-    /// start by changes of the last bit, with the kinetic energy of such changes over a step.
+    /// Largest energy that the round-off of the positions looks like, joules: the change of the potential
+    /// energy at the start by changes of the last bit, with the kinetic energy of such changes over a step.
     pub round_off: f64,
     /// `largest_error` over `largest_kinetic`; none if the sheet never moved.
     pub relative_error: Option<f64>,

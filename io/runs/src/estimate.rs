@@ -8,8 +8,8 @@ use isosheet_scenes::{Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile
 use std::fmt;
 use std::path::Path;
 
-/// Memory of a vertex for the factors of a step, bytes for each doubling of the number of vertices: what nested
-/// dissection leaves of the blocks of a mesh. 430 was measured for a square of 22 801 vertices.
+/// Memory of a vertex for the factors of a step, bytes for each doubling of the number of vertices: what
+/// nested dissection leaves of the blocks of a mesh. 430 was measured for a square of 22 801 vertices.
 const MEMORY_OF_FACTORS: f64 = 430.0;
 
 /// Bytes of a step in the history, at most.

@@ -12,13 +12,13 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Continues the run in a folder until time `until` (seconds), later than the `stop.time` of its scene, with the same
-/// bits as a run of a scene with that `stop.time`; the scene in the folder is changed to it. The same call continues a
-/// run that was stopped on that way.
+/// Continues the run in a folder until time `until` (seconds), later than the `stop.time` of its scene, with
+/// the same bits as a run of a scene with that `stop.time`; the scene in the folder is changed to it. The
+/// same call continues a run that was stopped on that way.
 ///
 /// # Errors
-/// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Extension`] if the run cannot
-/// go on like that. Then nothing has changed.
+/// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Extension`] if the
+/// run cannot go on like that. Then nothing has changed.
 pub fn extend_folder(
     folder: &Path,
     until: f64,

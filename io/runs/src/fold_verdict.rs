@@ -143,8 +143,8 @@ impl FoldVerdict {
         })
     }
 
-    /// Sentences, the most telling first: what the creases do, what the panels do, what stands against the folding.
-    /// `rigid` is how far rigid panels close, where that was tried.
+    /// Sentences, the most telling first: what the creases do, what the panels do, what stands against the
+    /// folding. `rigid` is how far rigid panels close, where that was tried.
     pub fn in_words(&self, rigid: Option<&FoldResidual>) -> Vec<String> {
         let mut words = vec![self.creases_in_words(), self.panels_in_words(rigid)];
         if let [first, others @ ..] = &self.unfoldable[..] {

@@ -150,8 +150,8 @@ pub(crate) struct RunFolder {
     lock: File,
 }
 
-/// Gives the lock up at once. (A file that is closed keeps it as long as another process has a copy, such as one that
-/// has been forked at that moment and has not yet become another program.)
+/// Gives the lock up at once. (A file that is closed keeps it as long as another process has a copy, such as
+/// one that has been forked at that moment and has not yet become another program.)
 impl Drop for RunFolder {
     fn drop(&mut self) {
         let _ = self.lock.unlock();
@@ -191,8 +191,8 @@ impl RunFolder {
         root.join(Self::SCENE).is_file() && Self::is_marked(root)
     }
 
-    /// Whether a folder is marked as that of a run: by the lock, or by a summary, as the empty file of the lock
-    /// may have been lost with a copy.
+    /// Whether a folder is marked as that of a run: by the lock, or by a summary, as the empty file of the
+    /// lock may have been lost with a copy.
     fn is_marked(root: &Path) -> bool {
         root.join(LOCK).is_file() || read_json::<Summary>(&root.join(Self::SUMMARY)).is_ok()
     }
@@ -350,8 +350,8 @@ pub fn run_of_file(path: &Path) -> Option<PathBuf> {
     RunFolder::holds_run(root).then(|| root.to_owned())
 }
 
-/// Refuses a folder that no run can be written to: one that has other files, or in which another process works. One that
-/// does not exist is not made.
+/// Refuses a folder that no run can be written to: one that has other files, or in which another process
+/// works. One that does not exist is not made.
 ///
 /// # Errors
 /// As [`simulate`](super::simulate) refuses it.
@@ -386,8 +386,8 @@ pub fn check_run(root: &Path, scenes: &[SceneFile], existing: Existing) -> Resul
     refused
 }
 
-/// Refuses a folder with links, or with anything else that a run does not make, under the names of its files and
-/// folders: nothing is written or deleted through them.
+/// Refuses a folder with links, or with anything else that a run does not make, under the names of its files
+/// and folders: nothing is written or deleted through them.
 fn refuse_links(root: &Path) -> Result<(), RunError> {
     let files = RunFolder::FILES.into_iter().chain([LOCK]);
     let files = files.map(|name| (root.join(name), Metadata::is_file as fn(&Metadata) -> bool));

@@ -31,8 +31,8 @@ impl<'a> FrameField<'a> {
         }
     }
 
-    /// The fields of a motion of a sheet among obstacles: the strain of the edges (none of obstacles that deform), the distance to obstacles, and of
-    /// each quantity that `has` names what a page shows of it.
+    /// The fields of a motion of a sheet among obstacles: the strain of the edges (none of obstacles that
+    /// deform), the distance to obstacles, and of each quantity that `has` names what a page shows of it.
     pub(super) fn all(
         sheet: &Sheet,
         origins: &Origins,
@@ -204,8 +204,8 @@ impl<'a> FrameField<'a> {
         })
     }
 
-    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, of so many
-    /// faces of sheets and bodies; none for sheets of rods.
+    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, of so
+    /// many faces of sheets and bodies; none for sheets of rods.
     pub(super) fn elastic(model: &'a SheetModel, faces: usize) -> Vec<Self> {
         if model.elastic_sheet().is_none() {
             return Vec::new();

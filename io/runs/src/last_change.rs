@@ -2,8 +2,8 @@
 
 use isosheet_scenes::{Course, Function, Moved, Profile, Scene};
 
-/// Until when the functions of time and the poses of a scene change, seconds, or zero. Sines, which have no end, do not
-/// count.
+/// Until when the functions of time and the poses of a scene change, seconds, or zero. Sines, which have no
+/// end, do not count.
 pub(super) fn last_change(scene: &Scene) -> f64 {
     let mut scene = scene.clone();
     let folded = scene.folding.iter().map(|folding| folding.time);

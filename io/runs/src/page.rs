@@ -15,9 +15,9 @@ use std::io::Write;
 use std::path::Path;
 
 impl Recording {
-    /// What the page of the run shows: [`replay_of`](super::replay_of) with the measures of the scene, the pins and
-    /// immobile vertices, the curves and surfaces that hold vertices, a summary, the scene and how to make
-    /// the run again.
+    /// What the page of the run shows: [`replay_of`](super::replay_of) with the measures of the scene, the
+    /// pins and immobile vertices, the curves and surfaces that hold vertices, a summary, the scene and how
+    /// to make the run again.
     ///
     /// # Errors
     /// [`DataError`] of a run without a frame yet.
@@ -310,8 +310,8 @@ pub(crate) fn write_page_of(
     Ok(page.len())
 }
 
-/// The page of a run. One frame is in memory at a time: while the page is made, what it shows of them is in a file
-/// without a name in a folder.
+/// The page of a run. One frame is in memory at a time: while the page is made, what it shows of them is in a
+/// file without a name in a folder.
 fn page_of(
     recording: &Recording,
     frames: &RunFrames,
@@ -333,8 +333,8 @@ fn page_of(
 }
 
 impl Recording {
-    /// Reads a run, and makes its page; what the page shows is in a file without a name in a folder meanwhile. A
-    /// run that has no page is read all the same.
+    /// Reads a run, and makes its page; what the page shows is in a file without a name in a folder
+    /// meanwhile. A run that has no page is read all the same.
     ///
     /// # Errors
     /// [`RunError`] if the folder is not that of a run.

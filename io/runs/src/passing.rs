@@ -4,8 +4,9 @@ use isosheet_geometry::{BroadPhase, ContactMesh};
 use isosheet_mesh::Topology;
 use isosheet_scenes::{Folding, size};
 
-/// How deep an edge is in a panel that passes through it, beside the longest side of the sheet: two thicknesses of office paper
-/// of 0.2 m. Panels that lie on each other in one plane are less deep in each other, by round-off.
+/// How deep an edge is in a panel that passes through it, beside the longest side of the sheet: two
+/// thicknesses of office paper of 0.2 m. Panels that lie on each other in one plane are less deep in each
+/// other, by round-off.
 const DEEP: f64 = 1e-3;
 
 /// When panels pass through each other in a motion.

@@ -69,8 +69,8 @@ impl Recording {
     /// up to now.
     ///
     /// # Errors
-    /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read, or has fewer frames
-    /// or rows than the summary of a complete run says.
+    /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read, or has
+    /// fewer frames or rows than the summary of a complete run says.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let (mut recording, frames) = Self::open(folder)?;
         recording.load(frames, folder)?;
@@ -149,7 +149,8 @@ impl Recording {
         (recording, frames)
     }
 
-    /// Leaves the sheets alone: without obstacles, and without bodies and meshes in motion, which are parts of the mesh.
+    /// Leaves the sheets alone: without obstacles, and without bodies and meshes in motion, which are parts
+    /// of the mesh.
     pub fn leave_out_bodies(&mut self) {
         let count = self.scene.scene().sheet.len();
         let facts = Arc::make_mut(&mut self.facts);
@@ -178,7 +179,8 @@ impl Recording {
         }
     }
 
-    /// The frames for files of other programs, with bodies, the names of sheets and what edges are meant to do.
+    /// The frames for files of other programs, with bodies, the names of sheets and what edges are meant to
+    /// do.
     ///
     /// # Errors
     /// [`ExportError`] for options that choose no frames.
@@ -193,10 +195,9 @@ impl Recording {
         series.with_bodies(self.exported_bodies())
     }
 
-    /// The obstacles that do not deform for files of other programs, `obstacle_0` and so on by their numbers in the
-    /// scene, with their
-    /// poses in the frames of the trajectory. Of a half-space there is a square that is larger than what the
-    /// sheet passes through.
+    /// The obstacles that do not deform for files of other programs, `obstacle_0` and so on by their numbers
+    /// in the scene, with their poses in the frames of the trajectory. Of a half-space there is a square that
+    /// is larger than what the sheet passes through.
     pub fn exported_bodies(&self) -> Vec<SeriesBody> {
         let times = self.trajectory.times();
         let start = times.first().copied().unwrap_or_default();

@@ -12,8 +12,9 @@ use std::ops::ControlFlow;
 /// The page of a recorded motion: the sheet, the bodies in their poses, and
 ///
 /// - the field "strain" ([`Field::edge_strain`](isosheet_page::Field::edge_strain)), where there are bodies
-///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory has
-///   them the forces of the rods, the forces of contact and the gaps of the vertices, and what has yielded,
+///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory
+///   has them the forces of the rods, the forces of contact and the gaps of the vertices, and what has
+///   yielded,
 /// - the series of the history (see [`TimeSeries::of_history`]).
 ///
 /// Titles, pins and texts are left to the caller.

@@ -17,7 +17,8 @@ pub struct RecordedRulings {
     /// Of each face the unit vector along its ruling, three numbers; zero where it has none
     /// ([`Ruling`](isosheet_mesh::Ruling)).
     pub directions: Vec<f64>,
-    /// Of each face the principal curvature across its ruling, 1/m, positive for valleys; 0 where it has none.
+    /// Of each face the principal curvature across its ruling, 1/m, positive for valleys; 0 where it has
+    /// none.
     pub curvatures: Vec<f64>,
     /// Of each vertex the Gauss curvature besides that of the rest shape, 1/m2
     /// ([`GaussCurvature`](isosheet_mesh::GaussCurvature)).
@@ -39,8 +40,8 @@ impl<'a> Curvatures<'a> {
         Self::new(&facts.sheet, &facts.parts, count, held)
     }
 
-    /// Of the first parts, so many, of the union of sheets and bodies, with pinned vertices and creases; nothing if
-    /// their fits cannot be made, which no run asks for.
+    /// Of the first parts, so many, of the union of sheets and bodies, with pinned vertices and creases;
+    /// nothing if their fits cannot be made, which no run asks for.
     fn new(
         sheet: &'a Sheet,
         parts: &[(String, Part)],
@@ -151,8 +152,8 @@ impl Recording {
         trajectory.set_all(FrameQuantity::GaussCurvatures, all.gauss_curvatures);
     }
 
-    /// The curvature across the rulings, and the Gauss curvature, as fields. What they need is made when the first
-    /// value is asked for.
+    /// The curvature across the rulings, and the Gauss curvature, as fields. What they need is made when the
+    /// first value is asked for.
     pub(super) fn curvature_fields(&self) -> [FrameField<'_>; 2] {
         let field = |name: &str, unit: &str, place, note: &str| Field {
             name: name.into(),

@@ -12,8 +12,8 @@ use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Positions and values of fields of all frames in a file without a name, which ends with the process. They are
-/// computed once, and a page needs them several times.
+/// Positions and values of fields of all frames in a file without a name, which ends with the process. They
+/// are computed once, and a page needs them several times.
 pub(super) struct Spool {
     folder: PathBuf,
     file: File,

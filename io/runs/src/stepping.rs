@@ -109,8 +109,8 @@ impl<'a> Stepping<'a> {
         }))
     }
 
-    /// Takes up and releases what the last step asks for. (Not at its end, where a run may stop that is continued
-    /// later.)
+    /// Takes up and releases what the last step asks for. (Not at its end, where a run may stop that is
+    /// continued later.)
     fn switch(&mut self) -> Result<(), RunError> {
         if self.writer.progress.steps == 0 {
             return Ok(());

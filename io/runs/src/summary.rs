@@ -45,11 +45,13 @@ pub struct Summary {
     pub largest_displacement: f64,
     /// Extremes of the energies, and the largest errors of their balance.
     pub energy: EnergySummary,
-    /// The fastest vibration with a tenth of the largest kinetic energy, and a hundredth of the mean edge length to and fro, where steps are of the second-order backward
-    /// differentiation formula and no state of rest is asked for.
+    /// The fastest vibration with a tenth of the largest kinetic energy, and a hundredth of the mean edge
+    /// length to and fro, where steps are of the second-order backward differentiation formula and no state
+    /// of rest is asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vibration: Option<Vibration>,
-    /// The largest estimated error that a part of a step added to the positions, with BDF2 and implicit Euler.
+    /// The largest estimated error that a part of a step added to the positions, with BDF2 and implicit
+    /// Euler.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_error: Option<TimeError>,
     /// What the forces of supports left of the balance of forces and torques, with BDF2 and implicit Euler.
@@ -131,8 +133,8 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Whether supports and obstacles pull or push against each other with more than what they hold: then their forces
-    /// are those of the stiffness of the sheets.
+    /// Whether supports and obstacles pull or push against each other with more than what they hold: then
+    /// their forces are those of the stiffness of the sheets.
     pub(crate) fn is_squeezed(&self) -> bool {
         let on_obstacles = self.obstacles.iter().map(|f| -Vector3::from(*f));
         let supports = self.supports.iter().map(|f| Vector3::from(*f));

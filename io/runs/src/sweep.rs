@@ -55,9 +55,9 @@ impl Sweep {
     /// made in every run before. Nothing is read or written yet.
     ///
     /// # Errors
-    /// [`SweepError`] without keys, for a key that is given twice or contains another one, for an edit that every
-    /// run would overwrite, for more than [`Sweep::MOST_RUNS`] runs, and for paths that a line of text cannot
-    /// hold.
+    /// [`SweepError`] without keys, for a key that is given twice or contains another one, for an edit that
+    /// every run would overwrite, for more than [`Sweep::MOST_RUNS`] runs, and for paths that a line of text
+    /// cannot hold.
     pub fn new(
         scene: &Path,
         folder: &Path,
@@ -262,7 +262,8 @@ impl Sweep {
         Ok(Some(SweepTable::read(&path)?))
     }
 
-    /// The values of the keys of the sweep that a run belongs to; none if it belongs to none that can be read.
+    /// The values of the keys of the sweep that a run belongs to; none if it belongs to none that can be
+    /// read.
     pub fn values_of(folder: &Path) -> Vec<(String, String)> {
         let of_sweep = || {
             let whole = folder.canonicalize().ok()?;

@@ -6,12 +6,12 @@ use isosheet_dynamics::StepProgress;
 use isosheet_scenes::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use std::ops::ControlFlow;
 
-/// Most factorisations of a trial times vertices: about a second for each hundred thousand. (Of 40 patterns of
-/// 117 to 1120 vertices whose panels came to an end, all but one took less.)
+/// Most factorisations of a trial times vertices: about a second for each hundred thousand. (Of 40 patterns
+/// of 117 to 1120 vertices whose panels came to an end, all but one took less.)
 const MOST_WORK: usize = 1_000_000;
 
-/// Factorisations for each step that a trial may take in any case: soft panels that fold without snapping take two
-/// to three.
+/// Factorisations for each step that a trial may take in any case: soft panels that fold without snapping
+/// take two to three.
 const AT_LEAST: usize = 4;
 
 /// Where a scene that folds a pattern ends.
@@ -26,16 +26,17 @@ pub struct FoldTrial {
 }
 
 impl FoldTrial {
-    /// How far the end is from the folded shape of a sheet that does not stretch: the angles (radians, root of the mean
-    /// square) and the largest strain together. A strain is an angle by which a face has the wrong form.
+    /// How far the end is from the folded shape of a sheet that does not stretch: the angles (radians, root
+    /// of the mean square) and the largest strain together. A strain is an angle by which a face has the
+    /// wrong form.
     pub fn error(&self) -> f64 {
         self.residual.rms.to_radians().hypot(self.strain)
     }
 }
 
-/// How far the creases are from the angles that a scene folds to at its end. `None` if it cannot start, a step fails,
-/// or the end takes too much work; the clock has no part in that. `watch` is told the part of the time that is done, and
-/// ends the trial.
+/// How far the creases are from the angles that a scene folds to at its end. `None` if it cannot start, a
+/// step fails, or the end takes too much work; the clock has no part in that. `watch` is told the part of the
+/// time that is done, and ends the trial.
 ///
 /// # Errors
 /// [`SceneError`] if the scene cannot be built.

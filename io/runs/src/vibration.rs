@@ -23,8 +23,8 @@ pub struct Vibration {
 }
 
 impl Vibration {
-    /// Part by which the second-order backward differentiation formula makes a vibration slower, to leading order in
-    /// the angle `w h` of a step: `(w h)^2 / 3`, from its truncation error `h^3 x''' / 3`.
+    /// Part by which the second-order backward differentiation formula makes a vibration slower, to leading
+    /// order in the angle `w h` of a step: `(w h)^2 / 3`, from its truncation error `h^3 x''' / 3`.
     pub fn slowing(&self) -> f64 {
         let angle = 2.0 * PI * self.frequency * self.step;
         angle * angle / 3.0
@@ -43,8 +43,8 @@ impl fmt::Display for Vibration {
     }
 }
 
-/// Looks for the fastest vibration in the kinetic energy of a run: two peaks with less than half of the lower one
-/// between them.
+/// Looks for the fastest vibration in the kinetic energy of a run: two peaks with less than half of the lower
+/// one between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vibrations {
     /// Largest kinetic energy so far, joules.
@@ -98,8 +98,8 @@ impl Vibrations {
         }
     }
 
-    /// The fastest vibration that had a tenth of the largest kinetic energy and moved a mass (kilograms) by more than a
-    /// hundredth of some length (metres).
+    /// The fastest vibration that had a tenth of the largest kinetic energy and moved a mass (kilograms) by
+    /// more than a hundredth of some length (metres).
     pub(crate) fn fastest(&self, mass: f64, length: f64) -> Option<Vibration> {
         let (fastest, energy) = self.fastest?;
         let amplitude = (2.0 * energy / mass).sqrt() / (2.0 * PI * fastest.frequency);

@@ -9,27 +9,28 @@ impl Summary {
     /// the mesh counts as too coarse: one percent, 0.49 radians over a face.
     pub const CHORD_ERROR: f64 = 0.01;
 
-    /// Part of the largest energy exchanged that errors of the balance may give to a run: second-order methods
-    /// err by about that at the longest steps that resolve a motion.
+    /// Part of the largest energy exchanged that errors of the balance may give to a run: second-order
+    /// methods err by about that at the longest steps that resolve a motion.
     pub const ENERGY_GAIN: f64 = 0.02;
-    /// Part of the forces of the supports that their balance may leave: three times what the tolerance of the steps
-    /// leaves of the forces on a sheet at most.
+    /// Part of the forces of the supports that their balance may leave: three times what the tolerance of the
+    /// steps leaves of the forces on a sheet at most.
     pub const UNBALANCED: f64 = 0.1;
 
     /// Part by which the mesh may change the forces of bends.
     pub const FORCE_ERROR: f64 = 0.03;
 
-    /// Length of edges, by `(R t)^1/2`, up to which deflections of shells are right to 3 % (`cargo xtask validation`:
-    /// cylinders, a roof and a hemisphere under loads at points and on areas).
+    /// Length of edges, by `(R t)^1/2`, up to which deflections of shells are right to 3 %
+    /// (`cargo xtask validation`: cylinders, a roof and a hemisphere under loads at points and on areas).
     pub const SHELL_EDGE: f64 = 0.4;
 
-    /// Part of the elastic energy that the slack of bends may have in a sheet that is stretched more than bent.
+    /// Part of the elastic energy that the slack of bends may have in a sheet that is stretched more than
+    /// bent.
     pub const SLACK: f64 = 0.05;
 
     /// Part of the area on which the limit of the strain may act at the end.
     ///
-    /// Measured with cloths that rest on a ball (`docs/isometry.md`): limits that act on 2 to 33 % of the area change the
-    /// mean height by 1 % at most, limits that act on 64, 74 and 94 % by 4, 7 and 9 %.
+    /// Measured with cloths that rest on a ball (`docs/isometry.md`): limits that act on 2 to 33 % of the
+    /// area change the mean height by 1 % at most, limits that act on 64, 74 and 94 % by 4, 7 and 9 %.
     pub const AT_LIMIT: f64 = 0.5;
 
     /// Part by which steps may make a vibration slower.

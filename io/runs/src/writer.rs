@@ -327,7 +327,8 @@ impl RunWriter {
         progress.energy.observe(report, mass, size);
         let (asked, before) = (scene.method.accuracy, progress.time_error);
         progress.time_error = TimeError::after(report, asked, before);
-        // Whoever looks for a state of rest needs no vibrations on the way, and an accuracy divides the steps.
+        // Whoever looks for a state of rest needs no vibrations on the way, and an accuracy divides the
+        // steps.
         let method = &scene.method;
         let is_resolved = method.accuracy.is_some() || scene.stop.rest.is_some();
         if method.integrator == Integrator::Bdf2 && !is_resolved {
@@ -396,7 +397,8 @@ impl RunWriter {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
-            // A sheet at rest is not at its end while a support is about to release it, or a function of time to move it.
+            // A sheet at rest is not at its end while a support is about to release it, or a function of time
+            // to move it.
             let is_due = under_way.is_due(scene) || report.t < self.last_change;
             if is_due || largest_speed(under_way) > rest.speed {
                 self.progress.slow_since = None;

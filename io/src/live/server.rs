@@ -20,10 +20,11 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const SIGN: Duration = Duration::from_millis(500);
 /// How long the head of a request may take to come: browsers send it at once.
 const HEAD: Duration = Duration::from_secs(2);
-/// Most connections at a time whose request knows the token: a page has an open one, and some more for moments.
+/// Most connections at a time whose request knows the token: a page has an open one, and some more for
+/// moments.
 const MOST_CONNECTIONS: usize = 64;
-/// Most connections at a time whose request has not come yet. Where there are more, the oldest one is closed, so
-/// that whoever opens many and says nothing keeps no page away.
+/// Most connections at a time whose request has not come yet. Where there are more, the oldest one is closed,
+/// so that whoever opens many and says nothing keeps no page away.
 const MOST_WAITING: usize = 64;
 /// How long the end of a run waits at most until pages have been told and commands answered. A browser on a
 /// busy machine may leave unread for a second what has come.
@@ -129,8 +130,8 @@ impl Read for Until<'_> {
 }
 
 impl Shared {
-    /// Adds a connection to those whose request has not come yet, and closes the oldest one where there are too
-    /// many. Returns its number.
+    /// Adds a connection to those whose request has not come yet, and closes the oldest one where there are
+    /// too many. Returns its number.
     fn wait_for(&self, connection: &TcpStream) -> io::Result<u64> {
         let connection = connection.try_clone()?;
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);

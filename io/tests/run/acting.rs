@@ -80,7 +80,8 @@ fn a_cloth_drapes_over_a_table_and_over_a_body() {
         "scene.toml",
     ];
     let (said, recording) = done(dir.path(), &words);
-    // In the unit of the cloth, which is a twelfth of a metre: a block of a sixth of a metre, under its middle.
+    // In the unit of the cloth, which is a twelfth of a metre: a block of a sixth of a metre, under its
+    // middle.
     let half = 1.0 / 12.0;
     let points = last(&recording);
     let is_within =
@@ -127,7 +128,8 @@ fn a_towel_hangs_by_its_corners() {
         "0.3",
     ];
     let (said, recording) = done(dir.path(), &words);
-    // It is held by a corner wherever its coordinates are, and the opposite corner is as far down as the diagonal is long, which stretches by a percent at most.
+    // It is held by a corner wherever its coordinates are, and the opposite corner is as far down as the
+    // diagonal is long, which stretches by a percent at most.
     let diagonal = 0.3 * 2.0_f64.sqrt();
     let depth = -lowest(last(&recording));
     assert!(

@@ -222,8 +222,8 @@ fn pressed_tube(dir: &Path, friction: f64) {
     fs::write(dir.join("scene.toml"), scene).unwrap();
 }
 
-/// With friction it jams between the plates; without it folds flat, and stores some joules (its nine faces are strained
-/// to the limit).
+/// With friction it jams between the plates; without it folds flat, and stores some joules (its nine faces
+/// are strained to the limit).
 #[test]
 fn friction_that_does_not_settle_is_no_step() {
     let dir = tempfile::tempdir().unwrap();
@@ -332,8 +332,8 @@ fn extremes_of_a_run_include_its_start() {
     assert_eq!(summary.smallest_gap, gaps.reduce(f64::min));
 }
 
-/// A square sheet with a slit, drawn as a cut edge, whose sides touch at the start: with self-contact it hangs
-/// by one side, and the slit opens.
+/// A square sheet with a slit, drawn as a cut edge, whose sides touch at the start: with self-contact it
+/// hangs by one side, and the slit opens.
 #[test]
 fn sides_of_a_slit_start_together_and_part() {
     let dir = tempfile::tempdir().unwrap();

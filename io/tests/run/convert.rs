@@ -401,7 +401,8 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The numbered files of an earlier export would be taken for frames of this one by whatever reads the folder.
+/// The numbered files of an earlier export would be taken for frames of this one by whatever reads the
+/// folder.
 #[test]
 fn numbered_files_of_an_earlier_export_are_removed() {
     let dir = with_short_run(StartingPoint::Drape);

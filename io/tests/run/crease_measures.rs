@@ -254,9 +254,9 @@ fn creases_of_patterns_are_measured_in_scenes_of_fold() {
     );
 }
 
-/// Office paper with a crease of 0.05 N across, which a moment of 2e-4 N m bends. Its strip of 0.05 m turns the crease
-/// by `M / (k L)` on every mesh, though the faces beside it bend by more on coarse ones; the crease carries the
-/// moment of its law to round-off. Meshes, exports and the page say the same.
+/// Office paper with a crease of 0.05 N across, which a moment of 2e-4 N m bends. Its strip of 0.05 m turns
+/// the crease by `M / (k L)` on every mesh, though the faces beside it bend by more on coarse ones; the
+/// crease carries the moment of its law to round-off. Meshes, exports and the page say the same.
 #[test]
 fn the_angle_of_a_crease_is_its_kink_on_every_mesh() {
     let exact = 2e-4_f64 / (0.05 * 0.05);

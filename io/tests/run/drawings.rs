@@ -552,7 +552,8 @@ fn other_formats_have_the_mesh_alone() {
     }
 }
 
-/// A symbol is drawn in the size that its use gives it, as its `viewBox` says, and so is a page within the page.
+/// A symbol is drawn in the size that its use gives it, as its `viewBox` says, and so is a page within the
+/// page.
 #[test]
 fn symbols_have_their_own_coordinates() {
     let folder = tempfile::tempdir().unwrap();

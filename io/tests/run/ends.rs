@@ -521,8 +521,8 @@ fn flow_that_would_separate_is_told_with_its_angle() {
     }
 }
 
-/// The angle of the flag of the page on scenes, which has one sheet and no body, is that of its wind. Where no air comes
-/// there is none.
+/// The angle of the flag of the page on scenes, which has one sheet and no body, is that of its wind. Where
+/// no air comes there is none.
 #[test]
 fn the_angle_of_the_air_is_that_of_the_wind() {
     let dir = tempfile::tempdir().unwrap();

@@ -159,8 +159,8 @@ fn panels_are_elastic_where_rigid_ones_do_not_close() {
     assert_eq!(verdict.unfoldable, []);
 }
 
-/// A mountain at -180 degrees is not where a valley at 180 degrees is: with its odd crease in the wrong place a vertex
-/// has no motion of rigid panels to its angles, though some motion leads to a flat shape.
+/// A mountain at -180 degrees is not where a valley at 180 degrees is: with its odd crease in the wrong place
+/// a vertex has no motion of rigid panels to its angles, though some motion leads to a flat shape.
 #[test]
 fn creases_are_folded_to_their_own_sides() {
     let dir = tempfile::tempdir().unwrap();
@@ -368,8 +368,8 @@ fn used_folders_are_refused_before_the_trials() {
     );
 }
 
-/// A strip of three panels, of which those outside are twice as long as the one between them, with two valleys of 135 degrees.
-/// Their ends meet where the cosine of the angle is -1/4.
+/// A strip of three panels, of which those outside are twice as long as the one between them, with two
+/// valleys of 135 degrees. Their ends meet where the cosine of the angle is -1/4.
 const TRIANGLE: &str = "1 0 0.2 2 0.2\n1 2 0.2 2 0\n1 2 0 5 0\n1 5 0 5 1\n1 5 1 2 1\n1 2 1 2 0.8\n1 2 0.8 0 0.8\n1 0 0.8 0 0.2\n\
                         3 2 0.2 2 0.8\n3 3 0 3 1\n";
 
@@ -421,8 +421,9 @@ fn panels_that_pass_through_each_other_are_told() {
     );
 }
 
-/// Curved creases bend all panels. What the method of Origami Simulator (Ghassaei, Demaine and Gershenfeld 2018) reaches
-/// on the same triangles is 7.7 degrees with a strain of 0.8 %; here it may be a degree more, angles and strain together.
+/// Curved creases bend all panels. What the method of Origami Simulator (Ghassaei, Demaine and Gershenfeld
+/// 2018) reaches on the same triangles is 7.7 degrees with a strain of 0.8 %; here it may be a degree more,
+/// angles and strain together.
 #[test]
 fn panels_beside_curved_creases_fold_as_far_as_by_bars_and_hinges() {
     let Some(data) = data_folder() else { return };

@@ -13,7 +13,8 @@ const SIDES: usize = 7;
 const RADIUS: f64 = 0.05;
 const HEIGHT: f64 = 0.1;
 
-/// A closed prism all vertices of which are held, and whose upper end is lowered to a tenth less of its height.
+/// A closed prism all vertices of which are held, and whose upper end is lowered to a tenth less of its
+/// height.
 fn scene(forces: &str) -> String {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for z in [0.0, HEIGHT] {

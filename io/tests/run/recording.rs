@@ -171,9 +171,9 @@ fn a_recording_that_has_not_ended_is_not_continued() {
     }
 }
 
-/// What a program drove is in the scene of the recording, with the times at which it changed abruptly, so that the
-/// motion is made again: a pin in parts of three steps each, a load by a sine that is replaced half-way, and an
-/// obstacle by poses.
+/// What a program drove is in the scene of the recording, with the times at which it changed abruptly, so
+/// that the motion is made again: a pin in parts of three steps each, a load by a sine that is replaced
+/// half-way, and an obstacle by poses.
 #[test]
 fn a_recording_that_was_driven_makes_the_motion_again() {
     let folder = tempfile::tempdir().unwrap();

@@ -131,8 +131,8 @@ fn a_run_that_was_stopped_has_forces_up_to_there() {
     assert!((0.3 * weight..weight).contains(&largest), "{largest} N");
 }
 
-/// Masses that differ by twelve powers of ten are too far apart for a least-squares solution: the frames have the forces
-/// of the step instead, and can be read.
+/// Masses that differ by twelve powers of ten are too far apart for a least-squares solution: the frames have
+/// the forces of the step instead, and can be read.
 #[test]
 fn frames_have_rod_forces_whatever_the_masses_of_bodies_are() {
     let dir = tempfile::tempdir().unwrap();

@@ -5,8 +5,8 @@ use isosheet_formats::Trajectory;
 use isosheet_runs::Recording;
 use std::fs;
 
-/// A strip of office paper, clamped at its left end, that a moment rolls up to the curvature `M / (D w) = 8 / m` towards
-/// its front.
+/// A strip of office paper, clamped at its left end, that a moment rolls up to the curvature
+/// `M / (D w) = 8 / m` towards its front.
 const SCENE: &str = "version = 1
 [sheet]
 mesh = { rectangle = { width = 0.1, height = 0.05, columns = 20, rows = 10, diagonals = \"rising\" } }
@@ -73,9 +73,9 @@ fn a_strip_under_a_moment_is_ruled_along_the_axis_of_the_moment() {
         assert!(d[1] > 0.999, "{f}: {d:?}");
         assert!((curvature / 8.0 - 1.0).abs() < 0.02, "{f}: {curvature}");
     }
-    // What is left of the Gauss curvature is stretching. Lengths that change by the part `e` change the angle between
-    // the sides `b` and `c` of a face by at most `2 e (cot B + cot C)`: 4 e at the right angles of these faces and 2 e
-    // at the others, 16 e at a vertex, whose share of the area is a square.
+    // What is left of the Gauss curvature is stretching. Lengths that change by the part `e` change the angle
+    // between the sides `b` and `c` of a face by at most `2 e (cot B + cot C)`: 4 e at the right angles of
+    // these faces and 2 e at the others, 16 e at a vertex, whose share of the area is a square.
     let strain = summary(&dir.join("run")).elastic.unwrap().strain;
     let gauss = frames.gauss_curvatures(last).unwrap();
     let largest = gauss.iter().fold(0.0_f64, |m, k| m.max(k.abs()));

@@ -4,8 +4,8 @@ use crate::{assert_same, code, killed, run, stderr, stdout};
 use isosheet_formats::{LoadKind, Trajectory, read_loads};
 use std::fs;
 
-/// A run whose trajectory is the obstacle of a second one, and leads its supports, beside a fixed obstacle: it is
-/// killed and continued, its folder has a copy of the file, and its loads and files name the obstacle.
+/// A run whose trajectory is the obstacle of a second one, and leads its supports, beside a fixed obstacle:
+/// it is killed and continued, its folder has a copy of the file, and its loads and files name the obstacle.
 #[test]
 fn the_trajectory_of_a_run_drives_another_that_continues_to_the_same_bits() {
     let dir = tempfile::tempdir().unwrap();

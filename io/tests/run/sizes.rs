@@ -177,8 +177,9 @@ fn frames_for_which_the_disk_has_no_room_are_refused() {
     );
 }
 
-/// The archive and the page of a run are made with one frame in memory at a time: the program with its threads and two
-/// copies of the frames, of which there were four before, do not fit in the memory that it gets.
+/// The archive and the page of a run are made with one frame in memory at a time: the program with its
+/// threads and two copies of the frames, of which there were four before, do not fit in the memory that it
+/// gets.
 #[cfg(unix)]
 #[test]
 fn the_end_of_a_long_run_needs_no_copies_of_its_frames() {

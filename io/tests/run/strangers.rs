@@ -326,7 +326,8 @@ fn arrays_that_memory_cannot_hold_are_refused_before_they_are_read() {
         assert_eq!(code(&refused), Some(3), "{}", stderr(&refused));
         assert!(stderr(&refused).contains(problem), "{}", stderr(&refused));
     }
-    // Half a gigabyte of zeros is half a megabyte of archive, which may take 32 MiB and fifty times its length.
+    // Half a gigabyte of zeros is half a megabyte of archive, which may take 32 MiB and fifty times its
+    // length.
     let file = fs::File::create(dir.join("bomb.npz")).unwrap();
     let mut zip = zip::ZipWriter::new(file);
     zip.start_file("t.npy", zip::write::SimpleFileOptions::default())

@@ -88,8 +88,8 @@ fn own_colour(record: &Record<'_>) -> Result<Option<Colour>, DataError> {
     })
 }
 
-/// The colours of `AutoCAD` by their index, about: six of them, black, greys, and 24 hues in five shades, each
-/// full and half.
+/// The colours of `AutoCAD` by their index, about: six of them, black, greys, and 24 hues in five shades,
+/// each full and half.
 fn of_index(index: u8) -> Colour {
     let hue = |degrees: f64, chroma: f64, value: f64| {
         Colour([5.0, 3.0, 1.0].map(|n| {

@@ -14,7 +14,8 @@ pub(super) fn compose(outer: Matrix, inner: Matrix) -> Matrix {
     [u, v, [w[0] + outer[2][0], w[1] + outer[2][1]]]
 }
 
-/// The map of a property `transform`, which may have the units that the attribute has not; `None` if it cannot be read.
+/// The map of a property `transform`, which may have the units that the attribute has not; `None` if it
+/// cannot be read.
 pub(super) fn parse(text: &str) -> Option<Matrix> {
     let mut matrix = IDENTITY;
     if text == "none" {

@@ -83,8 +83,8 @@ fn view_box(node: Node<'_, '_>) -> Result<Option<ViewBox>, String> {
     }
 }
 
-/// Where the content of an element `svg` or `symbol` is drawn, in units of what it is in: the map there, and its
-/// viewport.
+/// Where the content of an element `svg` or `symbol` is drawn, in units of what it is in: the map there, and
+/// its viewport.
 ///
 /// # Errors
 /// What is wrong with its attributes.

@@ -9,7 +9,8 @@ type Point = [f64; 2];
 /// The curves of the sub-paths of path data, `most` at most.
 ///
 /// # Errors
-/// What is wrong. (A program that shows drawings leaves out the rest of the path: here it would be lost to the sheet.)
+/// What is wrong. (A program that shows drawings leaves out the rest of the path: here it would be lost to
+/// the sheet.)
 pub(super) fn sub_paths(data: &str, most: usize) -> Result<Vec<Vec<PlaneCurve>>, String> {
     let mut pen = Drawn::default();
     for (count, segment) in PathParser::from(data).enumerate() {

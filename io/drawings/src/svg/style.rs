@@ -44,7 +44,8 @@ pub(super) struct Style {
     /// Whether it is shown at all, with all that is in it.
     pub(super) shown: bool,
     current: Ink,
-    /// The map of the element and the point about which it is, as they are written; inner elements do not have them.
+    /// The map of the element and the point about which it is, as they are written; inner elements do not
+    /// have them.
     pub(super) transform: Option<String>,
     pub(super) transform_origin: Option<String>,
 }
@@ -137,7 +138,8 @@ impl Style {
 /// So many characters of a colour that is not understood are told.
 const LONGEST: usize = 40;
 
-/// A colour, and how opaque it is, from 0 to 1; none of what is no colour, or one of a kind that is not known.
+/// A colour, and how opaque it is, from 0 to 1; none of what is no colour, or one of a kind that is not
+/// known.
 fn colour(value: &str) -> Option<(Colour, f64)> {
     // The colour of a printer follows that of screens.
     let screen = value.split_once("icc-color(");

@@ -89,7 +89,8 @@ pub(super) fn without_comments(text: &str) -> String {
     kept + rest
 }
 
-/// The rules of a text: their selectors, and the declarations between braces. Rules that begin with `@` are left out.
+/// The rules of a text: their selectors, and the declarations between braces. Rules that begin with `@` are
+/// left out.
 fn blocks_of(text: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -106,7 +107,8 @@ fn blocks_of(text: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// What follows a rule that begins with `@`: it ends with a semicolon, or with the brace that closes its block.
+/// What follows a rule that begins with `@`: it ends with a semicolon, or with the brace that closes its
+/// block.
 fn after_at_rule(text: &str) -> &str {
     let mut depth = 0_usize;
     for (place, c) in text.char_indices() {

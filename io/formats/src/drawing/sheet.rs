@@ -232,8 +232,8 @@ fn assignment(class: LineClass) -> EdgeAssignment {
     }
 }
 
-/// The lines of paths with fine parts in longer ones: as many of them become one straight line as are needed for its ends
-/// to be further apart than four times the tolerance within which ends become one.
+/// The lines of paths with fine parts in longer ones: as many of them become one straight line as are needed
+/// for its ends to be further apart than four times the tolerance within which ends become one.
 fn without_short_ones(lines: &[&DrawnLine], snap: f64) -> Vec<DrawnLine> {
     let least = 4.0 * snap;
     let apart = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);

@@ -100,8 +100,8 @@ fn write_bodies(path: &Path, series: &Series<'_>, frame: usize) -> Result<(), Ex
 pub(super) struct Extras<'a> {
     /// Texture coordinates of the vertices.
     pub(super) uv: Option<&'a [[f64; 2]]>,
-    /// Faces that follow one another and have the same groups: the names of these, and the number of the first
-    /// face, ascending.
+    /// Faces that follow one another and have the same groups: the names of these, and the number of the
+    /// first face, ascending.
     pub(super) groups: Vec<(String, usize)>,
 }
 

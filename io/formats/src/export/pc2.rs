@@ -6,8 +6,8 @@ use isosheet_files::{DataError, write_atomically};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes the point cache and, beside it, the mesh of the first frame as OBJ. A mesh that is there without a point cache
-/// is not replaced: it may be the one that the run was made of.
+/// Writes the point cache and, beside it, the mesh of the first frame as OBJ. A mesh that is there without a
+/// point cache is not replaced: it may be the one that the run was made of.
 ///
 /// The header has the name of the format, its version 1, the number of points, the first frame 0, one frame a
 /// sample, and the number of samples; little-endian `f32` coordinates of all points follow, sample after

@@ -101,9 +101,10 @@ pub struct SeriesField {
 /// - `contact_force`, the forces of contact on the vertices (vectors, newtons),
 /// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]),
 /// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys),
-/// - `plastic_curvature_1` and `plastic_curvature_2`, the principal values of the plastic curvature of the faces (1/m, see
-///   [`Trajectory::plastic_curvatures`]), and
-/// - `ruling` (unit vectors), `ruling_curvature` (1/m) and `gauss_curvature` (1/m2), see [`Trajectory::rulings`].
+/// - `plastic_curvature_1` and `plastic_curvature_2`, the principal values of the plastic curvature of the
+///   faces (1/m, see [`Trajectory::plastic_curvatures`]), and
+/// - `ruling` (unit vectors), `ruling_curvature` (1/m) and `gauss_curvature` (1/m2), see
+///   [`Trajectory::rulings`].
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -116,7 +117,8 @@ pub struct Series<'a> {
     /// The fold angles of each frame, radians, once they are asked for.
     followed: OnceLock<Vec<Vec<f64>>>,
     fields: Vec<SeriesField>,
-    /// The bends beside creases in each frame, radians, in the order of the edges; empty where there are none.
+    /// The bends beside creases in each frame, radians, in the order of the edges; empty where there are
+    /// none.
     crease_bends: Vec<f64>,
     rate: f64,
     /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
@@ -353,8 +355,8 @@ impl<'a> Series<'a> {
     }
 
     /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi]
-    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length. At creases in sheets that bend it is
-    /// the kink, without the bend of the faces beside them ([`Trajectory::crease_bends`]).
+    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length. At creases in sheets that bend it
+    /// is the kink, without the bend of the faces beside them ([`Trajectory::crease_bends`]).
     ///
     /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed
     /// through itself stays a mountain or a valley of half a turn. A mountain that is shut in the first frame

@@ -8,8 +8,8 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list. Returns
-/// the files, and how many of an earlier export were removed.
+/// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list.
+/// Returns the files, and how many of an earlier export were removed.
 pub(super) fn write_series(
     path: &Path,
     series: &Series<'_>,

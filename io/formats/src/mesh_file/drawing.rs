@@ -7,8 +7,8 @@ use crate::mesh_file::pattern::{self, FileUnit, PatternLines, Planar};
 use isosheet_files::DataError;
 use std::collections::BTreeMap;
 
-/// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are
-/// within the tolerance for welding of each other are one.
+/// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points
+/// that are within the tolerance for welding of each other are one.
 pub(super) fn parse(
     bytes: &[u8],
     format: MeshFormat,

@@ -33,8 +33,8 @@ impl FaceGroups {
         self.0.iter().map(|(name, faces)| (&**name, &**faces))
     }
 
-    /// The groups of other faces, each of which is, or is a part of, the face whose number `origin` has at its
-    /// place.
+    /// The groups of other faces, each of which is, or is a part of, the face whose number `origin` has at
+    /// its place.
     pub fn of_parts(&self, origin: &[u32]) -> Self {
         if self.is_empty() {
             return Self::default();

@@ -23,11 +23,11 @@ use std::collections::HashMap;
 ///
 /// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
 ///   metres.
-/// - Without `faces_vertices` the faces are those of the flat crease pattern, and so they are where those of the file leave
-///   out creases. Vertices of the pattern that are at one place are one then.
-/// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands. Mountains,
-///   valleys and fold angles are as seen from the side from which faces are counter-clockwise, so that those at
-///   reversed faces are turned with them.
+/// - Without `faces_vertices` the faces are those of the flat crease pattern, and so they are where those of
+///   the file leave out creases. Vertices of the pattern that are at one place are one then.
+/// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands.
+///   Mountains, valleys and fold angles are as seen from the side from which faces are counter-clockwise, so
+///   that those at reversed faces are turned with them.
 /// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
 /// - Fold angles are degrees in the file.
 /// - The keys `isosheet:lines` and `edges_isosheet:lines` say which lines of a drawing edges follow

@@ -37,8 +37,8 @@ pub struct ReadingChanges {
     /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
     /// and fold angles at them.
     pub reversed_faces: usize,
-    /// Faces of FOLD files that were left out because creases are sides of none of them: those that the edges enclose take
-    /// their place.
+    /// Faces of FOLD files that were left out because creases are sides of none of them: those that the edges
+    /// enclose take their place.
     pub replaced_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
@@ -51,7 +51,8 @@ pub struct ReadingChanges {
     pub loose_cuts: usize,
     /// Lines of drawings that were left out because they lie on others.
     pub double_lines: usize,
-    /// Edges of drawings where creases that are meant to do different things lie on each other, which fold freely.
+    /// Edges of drawings where creases that are meant to do different things lie on each other, which fold
+    /// freely.
     pub contradicting_lines: usize,
     /// Lines of drawings that were left out because their colours mean nothing in a crease pattern.
     pub other_lines: usize,
@@ -147,16 +148,17 @@ pub struct MeshFile {
     /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were
     /// made of one.
     pub drawn: DrawnLines,
-    /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of PLY
-    /// files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials; of FOLD
-    /// files by the key `faces_isosheet:group`.
+    /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of
+    /// PLY files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials;
+    /// of FOLD files by the key `faces_isosheet:group`.
     pub groups: FaceGroups,
-    /// Of each triangle the texture coordinates of its corners, where the file has them; empty if it has none.
+    /// Of each triangle the texture coordinates of its corners, where the file has them; empty if it has
+    /// none.
     pub texture: Vec<Option<[[f64; 2]; 3]>>,
     /// What reading changed.
     pub changes: ReadingChanges,
-    /// What of a drawing was left out because it is no line that is understood, with its number: texts, images, what
-    /// is hidden, and shapes of colours that are not known.
+    /// What of a drawing was left out because it is no line that is understood, with its number: texts,
+    /// images, what is hidden, and shapes of colours that are not known.
     pub left_out: BTreeMap<String, usize>,
     pub(super) path: PathBuf,
     /// The time that a VTK file gives its polygons, in its unit.

@@ -10,9 +10,10 @@ use isosheet_mesh::wording::given;
 
 /// Reads the vertices and faces of an OBJ file.
 ///
-/// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; those of normals are skipped),
-/// `g`, `o` and `usemtl` as groups of the faces that follow, line continuation by a backslash, comments. Normals,
-/// colours, lines and points are skipped. Texture coordinates that are not finite or not there are none.
+/// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; those of normals are
+/// skipped), `g`, `o` and `usemtl` as groups of the faces that follow, line continuation by a backslash,
+/// comments. Normals, colours, lines and points are skipped. Texture coordinates that are not finite or not
+/// there are none.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut parser = Parser {
         mesh: Polyhedron::counted_from(1),

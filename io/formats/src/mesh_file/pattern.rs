@@ -1,7 +1,7 @@
 //! Crease patterns as drawings: lines in a plane, each with what it is meant to do.
 //!
-//! Formats of drawings give [`Segment`]s. Ends that are near each other become one point, lines are divided where
-//! they cross, and the circuits of what comes of it are the faces.
+//! Formats of drawings give [`Segment`]s. Ends that are near each other become one point, lines are divided
+//! where they cross, and the circuits of what comes of it are the faces.
 
 pub(super) mod cp;
 mod faces;
@@ -42,17 +42,19 @@ pub(super) struct PatternLines {
     pub(super) drawn: DrawnLines,
     /// Visible lines of colours that mean nothing.
     pub(super) of_other_colours: usize,
-    /// What is left out besides, with its number: texts, images, what is hidden, colours that are not understood.
+    /// What is left out besides, with its number: texts, images, what is hidden, colours that are not
+    /// understood.
     pub(super) left_out: BTreeMap<String, usize>,
 }
 
-/// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless
-/// the reader is told otherwise: the first of these distances with which no face crosses itself, every line leads somewhere and
-/// no two contradict each other, or else fewest do so. They are above the digits that drawing programs write, and at most a millimetre of a
-/// sheet of twenty centimetres.
+/// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing,
+/// unless the reader is told otherwise: the first of these distances with which no face crosses itself, every
+/// line leads somewhere and no two contradict each other, or else fewest do so. They are above the digits
+/// that drawing programs write, and at most a millimetre of a sheet of twenty centimetres.
 const SNAP: [f64; 4] = [5e-4, 1e-3, 2e-3, 5e-3];
 
-/// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the drawing.
+/// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the
+/// drawing.
 ///
 /// # Errors
 /// [`DataError`] for lines that are no drawing of a sheet.
@@ -138,8 +140,8 @@ fn snapped(
     best
 }
 
-/// The number of faces that cross or touch themselves, as lines bend where their ends are moved, and of lines that lead nowhere
-/// or contradict each other.
+/// The number of faces that cross or touch themselves, as lines bend where their ends are moved, and of lines
+/// that lead nowhere or contradict each other.
 fn faults(planar: &Planar) -> (usize, usize) {
     let crosses = |face: &&Vec<i64>| {
         let corners: Vec<u32> = face.iter().map(|&v| v as u32).collect();

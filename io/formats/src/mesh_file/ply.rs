@@ -14,9 +14,9 @@ const MAGIC: &[u8] = b"ply";
 
 /// Reads the vertices and faces of a PLY file, text or binary of either byte order: the properties `x`, `y`
 /// and `z` of the element `vertex` and the list `vertex_indices` or `vertex_index` of the element `face`.
-/// Faces are grouped by their properties that are integers and no colours. Texture coordinates are the properties
-/// `s` and `t`, `u` and `v` or `texture_u` and `texture_v` of the vertices, or the list `texcoord` of the faces.
-/// Everything else is skipped.
+/// Faces are grouped by their properties that are integers and no colours. Texture coordinates are the
+/// properties `s` and `t`, `u` and `v` or `texture_u` and `texture_v` of the vertices, or the list `texcoord`
+/// of the faces. Everything else is skipped.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut mesh = Polyhedron::default();
     if bytes.is_empty() {

@@ -27,12 +27,14 @@ pub(super) struct Pieces {
 }
 
 /// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses
-/// or touches itself, seen along its normal, or has no area. It may come to a corner more than once, as that of a face does
-/// into which another one reaches from a corner, and run along a line to a hole in both directions.
+/// or touches itself, seen along its normal, or has no area. It may come to a corner more than once, as that
+/// of a face does into which another one reaches from a corner, and run along a line to a hole in both
+/// directions.
 ///
-/// Corner after corner is cut off, always by the shortest cut that is inside and leaves no sliver, if there is
-/// one: a quad is cut along its shorter diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
-/// triangulation would leave it to round-off how the corners of a rectangle are joined.
+/// Corner after corner is cut off, always by the shortest cut that is inside and leaves no sliver, if there
+/// is one: a quad is cut along its shorter diagonal if both will do. Of equal cuts that with the smallest
+/// vertex number is made. A Delaunay triangulation would leave it to round-off how the corners of a rectangle
+/// are joined.
 pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
     let (places, near) = outline(corners, at)?;
     let mut pieces = Pieces {
@@ -56,8 +58,8 @@ pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<
     is_left.then_some(pieces)
 }
 
-/// The places of the corners of a polygon in its plane, and the distance within which they are the same; `None` if its
-/// outline crosses or touches itself, or has no extent.
+/// The places of the corners of a polygon in its plane, and the distance within which they are the same;
+/// `None` if its outline crosses or touches itself, or has no extent.
 pub(super) fn outline(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<(Vec<Point>, f64)> {
     let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
     let near = NEAR * extent(&places);
@@ -214,8 +216,8 @@ mod tests {
         assert!(triangles.iter().all(|t| t.contains(&1) && t.contains(&3)));
     }
 
-    /// A strip between two curves that bend outwards by a ten thousandth of their length: all triangles reach from
-    /// one to the other.
+    /// A strip between two curves that bend outwards by a ten thousandth of their length: all triangles reach
+    /// from one to the other.
     #[test]
     fn curves_that_hardly_bend_leave_no_slivers() {
         let bend = |x: f64| 1e-4 * x * (10.0 - x);
@@ -233,8 +235,8 @@ mod tests {
         }
     }
 
-    /// A strip with a corner inside of its short side, but for a hundred thousandth: the last two triangles are none of
-    /// them flat.
+    /// A strip with a corner inside of its short side, but for a hundred thousandth: the last two triangles
+    /// are none of them flat.
     #[test]
     fn the_last_triangle_is_no_sliver() {
         let points = [

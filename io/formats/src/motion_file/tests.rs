@@ -117,8 +117,8 @@ fn numbered_polygons_keep_the_triangles_of_the_first() {
     assert_eq!(alone.faces.len(), 2);
 }
 
-/// The k-th file in the order of the numbers is k frames after the first one, whatever distance the numbers have; one
-/// that is missing is told, but for files that have times.
+/// The k-th file in the order of the numbers is k frames after the first one, whatever distance the numbers
+/// have; one that is missing is told, but for files that have times.
 #[test]
 fn numbers_of_samples_have_one_distance() {
     let dir = tempfile::tempdir().unwrap();

@@ -14,13 +14,13 @@ pub struct FrameData<'a> {
     pub gaps: &'a [f64],
     /// Plastic angle of each edge (length E, radians, positive for valleys).
     pub plastic_angles: &'a [f64],
-    /// Bend of the faces beside each crease, which the angle between them includes (length E, radians, positive
-    /// for valleys, 0 at other edges).
+    /// Bend of the faces beside each crease, which the angle between them includes (length E, radians,
+    /// positive for valleys, 0 at other edges).
     pub crease_bends: &'a [f64],
     /// Unit vector along the ruling of each face (length 3F), zero where there is none.
     pub rulings: &'a [f64],
-    /// Principal curvature across the ruling of each face (length F, 1/m, positive for valleys), 0 where there is
-    /// none.
+    /// Principal curvature across the ruling of each face (length F, 1/m, positive for valleys), 0 where
+    /// there is none.
     pub ruling_curvatures: &'a [f64],
     /// Gauss curvature at each vertex besides that of the rest shape (length V, 1/m2).
     pub gauss_curvatures: &'a [f64],

@@ -38,8 +38,9 @@ pub struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// Reads the arrays `t`, `x` and `faces` of an archive as [`Trajectory::write`](super::Trajectory::write) makes
-    /// it, or of a mesh in motion ([`motion_archive`](crate::motion_archive)), with `frame` in place of `t`; `path` is used in errors only.
+    /// Reads the arrays `t`, `x` and `faces` of an archive as [`Trajectory::write`](super::Trajectory::write)
+    /// makes it, or of a mesh in motion ([`motion_archive`](crate::motion_archive)), with `frame` in place of
+    /// `t`; `path` is used in errors only.
     ///
     /// # Errors
     /// [`FileError::Read`], naming the array and the place in it.
@@ -230,8 +231,8 @@ impl MovingMesh {
         self.x[n * k..n * (k + 1)].as_chunks().0
     }
 
-    /// The position of a vertex at a time: on the line between those at the times about it, and that at the first
-    /// or the last time beyond these.
+    /// The position of a vertex at a time: on the line between those at the times about it, and that at the
+    /// first or the last time beyond these.
     pub fn position(&self, vertex: usize, t: f64) -> [f64; 3] {
         let next = self.times.partition_point(|time| *time <= t);
         let at = |k: usize| self.frame(k)[vertex];

@@ -1,4 +1,5 @@
-//! Arrays in the format `.npy` of numpy: a header, which is a dictionary in Python's syntax, and the entries by rows.
+//! Arrays in the format `.npy` of numpy: a header, which is a dictionary in Python's syntax, and the entries
+//! by rows.
 
 use std::io::{self, Read, Write};
 
@@ -176,7 +177,8 @@ impl Header {
         })
     }
 
-    /// Whether the entries are numbers of this kind, and if so whether the highest of their bytes is the first.
+    /// Whether the entries are numbers of this kind, and if so whether the highest of their bytes is the
+    /// first.
     pub(super) fn order_of<T: Number>(&self) -> Option<ByteOrder> {
         let kind = self.kind.trim_matches(['\'', '"']);
         match kind.strip_suffix(T::KIND)? {

@@ -13,9 +13,9 @@ use crate::words::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rigid body that responds: what touches it moves it, and gravity does. It meets sheets, obstacles and other
-/// bodies, whether `contact.self_contact` is set or not, by the friction of these: `obstacle.friction`, or
-/// otherwise `contact.friction` or that of a `contact.pair` with its name.
+/// A rigid body that responds: what touches it moves it, and gravity does. It meets sheets, obstacles and
+/// other bodies, whether `contact.self_contact` is set or not, by the friction of these: `obstacle.friction`,
+/// or otherwise `contact.friction` or that of a `contact.pair` with its name.
 ///
 /// ```toml
 /// [[body]]
@@ -31,12 +31,12 @@ pub struct Body {
     /// A name, by which measures and pairs of friction find it; if left out, `body_0` and so on.
     #[serde(default)]
     pub name: Option<String>,
-    /// Its form: one that encloses a volume. Of a file the triangles have to be closed, with counter-clockwise
-    /// corners as seen from outside; it may have cavities.
+    /// Its form: one that encloses a volume. Of a file the triangles have to be closed, with
+    /// counter-clockwise corners as seen from outside; it may have cavities.
     pub shape: Shape,
-    /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out 32,
-    /// and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with so many
-    /// sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
+    /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out
+    /// 32, and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with
+    /// so many sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
     #[serde(default)]
     pub sides: Option<usize>,
     /// Density, kg/m3. Either this or `mass` has to be given.
@@ -69,8 +69,8 @@ pub struct Body {
 /// Sides of circles where a body is drawn with them.
 const DRAWN: usize = 32;
 
-/// Sides of circles where a body touches with them: it rolls down at the acceleration of a true cylinder to half a
-/// per cent then.
+/// Sides of circles where a body touches with them: it rolls down at the acceleration of a true cylinder to
+/// half a per cent then.
 const TOUCHING: usize = 256;
 
 /// Least and largest number of sides of a circle.

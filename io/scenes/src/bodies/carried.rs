@@ -79,9 +79,9 @@ impl CarriedBody {
         self.part.vertices.clone()
     }
 
-    /// Adds to the forces on the surfaces that are seen (`3V`, newtons), at positions `x`, those on bodies that touch by
-    /// others: the whole of each where its surface reaches farthest against it, which is where a round body is
-    /// touched.
+    /// Adds to the forces on the surfaces that are seen (`3V`, newtons), at positions `x`, those on bodies
+    /// that touch by others: the whole of each where its surface reaches farthest against it, which is where
+    /// a round body is touched.
     pub fn add_round_forces(
         bodies: &[Self],
         simulation: &Simulation,
@@ -104,8 +104,8 @@ impl CarriedBody {
         }
     }
 
-    /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or about
-    /// the centre of mass on a slider.
+    /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or
+    /// about the centre of mass on a slider.
     pub fn guide_load(&self, simulation: &Simulation) -> Option<BodyLoad> {
         let x = &simulation.state().x;
         let pivot = of_point(x, self.pivot.as_ref()?);
@@ -119,8 +119,8 @@ impl CarriedBody {
         Some(BodyLoad::sum(own, x, pivot))
     }
 
-    /// What touches bodies, does to each of them at the end of the last step. (The forces on its vertices have
-    /// the sum and the torque of those on its surface.)
+    /// What touches bodies, does to each of them at the end of the last step. (The forces on its vertices
+    /// have the sum and the torque of those on its surface.)
     pub fn contact_loads(bodies: &[Self], simulation: &Simulation) -> Vec<BodyLoad> {
         let forces = match bodies {
             [] => None,

@@ -29,8 +29,8 @@ pub enum Guide {
         /// Stiffness of a spring at the hinge, N m/rad; without one there is none.
         #[serde(default)]
         stiffness: f64,
-        /// The angle at which the spring is at rest, degrees; 0 is where the body is at the start. A stiff spring
-        /// drives the body along it.
+        /// The angle at which the spring is at rest, degrees; 0 is where the body is at the start. A stiff
+        /// spring drives the body along it.
         #[serde(default)]
         #[unit(Degree)]
         rest: Profile,

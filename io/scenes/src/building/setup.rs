@@ -67,8 +67,8 @@ impl Facts {
         SurfacePoints::placed(self.points.as_ref(), x)
     }
 
-    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies and
-    /// obstacles.
+    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of
+    /// bodies and obstacles.
     fn of_sheets(
         &self,
         mut values: Vec<f64>,
@@ -134,8 +134,9 @@ impl Facts {
         all.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques about the
-    /// origins of the frames of those that do not deform, and about the origin of space of the others.
+    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques
+    /// about the origins of the frames of those that do not deform, and about the origin of space of the
+    /// others.
     pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<BodyLoad> {
         let driven = &self.origins.driven[..];
         let rigid = simulation.body_loads().into_iter().enumerate();
@@ -262,8 +263,8 @@ impl Setup {
         Ok(simulation)
     }
 
-    /// The simulation at a checkpoint, for which the scene was built ([`SceneFile::build_at`]) where it takes up
-    /// or releases something.
+    /// The simulation at a checkpoint, for which the scene was built ([`SceneFile::build_at`]) where it takes
+    /// up or releases something.
     ///
     /// [`SceneFile::build_at`]: crate::SceneFile::build_at
     ///

@@ -33,8 +33,8 @@ impl Bond {
         !self.numbers.is_empty()
     }
 
-    /// The force (newtons) that each pair carries at time `t` (seconds) and positions `x` (`3V`, metres), by its
-    /// number.
+    /// The force (newtons) that each pair carries at time `t` (seconds) and positions `x` (`3V`, metres), by
+    /// its number.
     pub(crate) fn forces(&self, t: f64, x: &[f64]) -> Vec<(usize, f64)> {
         let forces = match &self.of {
             Bonded::Sheets(glue) => glue.pair_forces(t, x),

@@ -67,8 +67,8 @@ pub struct SheetPair {
     pub sheets: [String; 2],
     /// Friction between the two.
     pub friction: Friction,
-    /// When they begin to meet; if left out, at the start. Before, they pass through each other. They must not touch
-    /// at that moment.
+    /// When they begin to meet; if left out, at the start. Before, they pass through each other. They must
+    /// not touch at that moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<When>,
     /// When they cease to meet; if left out, never.

@@ -22,10 +22,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The
 /// sides of a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one
-/// of them is given from its other end. A seam along one line is a hinge without stiffness, unless it has a `bend`;
-/// with a second one along the next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are
-/// drawn together through each other, so that with `contact.self_contact` an overlap has to be there at the
-/// start.
+/// of them is given from its other end. A seam along one line is a hinge without stiffness, unless it has a
+/// `bend`; with a second one along the next lines of vertices (an overlap) the curvature goes on across it.
+/// Sides that overlap are drawn together through each other, so that with `contact.self_contact` an overlap
+/// has to be there at the start.
 ///
 /// ```toml
 /// [[glue]]
@@ -55,15 +55,16 @@ pub struct Glue {
     /// `L`: a pair that carries all of that is apart by a ten-thousandth of an edge.
     #[serde(default)]
     pub stiffness: Option<f64>,
-    /// What resists bending across the seam, where edges of the two sides lie on one another. If left out, nothing.
+    /// What resists bending across the seam, where edges of the two sides lie on one another. If left out,
+    /// nothing.
     #[serde(default)]
     pub bend: Option<SeamBend>,
-    /// When the glue sets; if left out, at the start. It then holds the vertices of each pair as far apart as they
-    /// are at that moment.
+    /// When the glue sets; if left out, at the start. It then holds the vertices of each pair as far apart as
+    /// they are at that moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<When>,
-    /// When the seam opens; if left out, never. By a force each pair tears for itself, as a peeled film does. The
-    /// sides of a seam that was glued at the start do not meet in contact where they were glued.
+    /// When the seam opens; if left out, never. By a force each pair tears for itself, as a peeled film does.
+    /// The sides of a seam that was glued at the start do not meet in contact where they were glued.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<When>,
 }
@@ -81,8 +82,8 @@ pub struct Glue {
 pub struct SeamBend {
     /// Torsional stiffness of a metre of the seam, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which the faces of the
-    /// first side are counter-clockwise.
+    /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which the
+    /// faces of the first side are counter-clockwise.
     #[serde(default)]
     pub angle: f64,
 }

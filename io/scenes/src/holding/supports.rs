@@ -39,8 +39,9 @@ pub struct Support {
     /// How they are held.
     #[serde(default)]
     pub hold: Hold,
-    /// When it is taken up; if left out, at the start. It then holds the vertices where they are at that moment, and
-    /// moves on from there by as much as its motion, at the time of the scene, changes afterwards; a curve or a surface has to be where they are.
+    /// When it is taken up; if left out, at the start. It then holds the vertices where they are at that
+    /// moment, and moves on from there by as much as its motion, at the time of the scene, changes
+    /// afterwards; a curve or a surface has to be where they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<When>,
     /// When it is released; if left out, never.
@@ -63,8 +64,8 @@ pub enum Hold {
     Pin,
     /// In a prescribed motion, which is zero at the start: all vertices move as one rigid body.
     MovingPin(Motion),
-    /// As vertices of a mesh in motion move: each keeps the distance and the direction from its vertex there that it
-    /// has at the start.
+    /// As vertices of a mesh in motion move: each keeps the distance and the direction from its vertex there
+    /// that it has at the start.
     Follow {
         /// The mesh in motion.
         sequence: Sequence,
@@ -72,9 +73,9 @@ pub enum Hold {
         #[serde(default)]
         vertices: Followed,
     },
-    /// Clamped where they are at the start: the sheet keeps the slope that it has there, along the edges between
-    /// the vertices. Of a plate one line of vertices is enough; of other sheets the faces along the line are
-    /// pinned, which shortens the free part by their height.
+    /// Clamped where they are at the start: the sheet keeps the slope that it has there, along the edges
+    /// between the vertices. Of a plate one line of vertices is enough; of other sheets the faces along the
+    /// line are pinned, which shortens the free part by their height.
     Clamp,
     /// Clamped, in a prescribed motion, which is zero at the start: all vertices and the slopes move as one
     /// rigid body.
@@ -123,7 +124,8 @@ pub enum Followed {
     Nearest,
     /// Of each vertex the one with the same number, as in the sheet that it belongs to.
     SameNumber,
-    /// Vertices by their numbers, from 0: one for each vertex that is held, in the order of the numbers of these.
+    /// Vertices by their numbers, from 0: one for each vertex that is held, in the order of the numbers of
+    /// these.
     Numbers(Vec<usize>),
 }
 

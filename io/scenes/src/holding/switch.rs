@@ -12,8 +12,8 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// When something is taken up or released: a time in seconds, or a `Condition`. It happens at the end of the first
-/// step at which the time has come or the condition holds, once.
+/// When something is taken up or released: a time in seconds, or a `Condition`. It happens at the end of the
+/// first step at which the time has come or the condition holds, once.
 ///
 /// ```toml
 /// [[support]]
@@ -48,8 +48,8 @@ pub enum When {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Condition {
-    /// The force that it carries itself has reached so many newtons: of a support the sum over its vertices, of a
-    /// seam that of each pair, which tears for itself.
+    /// The force that it carries itself has reached so many newtons: of a support the sum over its vertices,
+    /// of a seam that of each pair, which tears for itself.
     Force(f64),
     /// A measure of the scene has passed a threshold.
     Measure(Threshold),

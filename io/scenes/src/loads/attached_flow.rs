@@ -7,11 +7,11 @@ use crate::words::problem::Checks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A sheet along whose both sides the air flows and which it leaves at an edge, as a wing or a flag in a steady
-/// wind: it has lift, drag that goes with it, the inertia of the air that moves along with the sheet, and a wake
-/// that the wind carries on. It holds at small angles between sheet and wind, 15 degrees as a rule, beyond which
-/// the flow separates; the drag across faces, which stays, is all that bounds the motion there. For the methods
-/// BDF2 and implicit Euler.
+/// A sheet along whose both sides the air flows and which it leaves at an edge, as a wing or a flag in a
+/// steady wind: it has lift, drag that goes with it, the inertia of the air that moves along with the sheet,
+/// and a wake that the wind carries on. It holds at small angles between sheet and wind, 15 degrees as a
+/// rule, beyond which the flow separates; the drag across faces, which stays, is all that bounds the motion
+/// there. For the methods BDF2 and implicit Euler.
 ///
 /// Each face carries a vortex ring: a step solves a dense system of as many equations.
 ///
@@ -30,8 +30,8 @@ pub struct AttachedFlow {
     pub sheet: Option<String>,
     /// Where the air leaves the sheet: the edges of its boundary both ends of which are selected.
     pub trailing: Selection,
-    /// The number of rows of vortices that the wake has, one for each step; what is behind them is one row more.
-    /// At least 2. If left out, 80.
+    /// The number of rows of vortices that the wake has, one for each step; what is behind them is one row
+    /// more. At least 2. If left out, 80.
     #[serde(default = "rows")]
     pub rows: usize,
 }

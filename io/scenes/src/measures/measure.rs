@@ -98,10 +98,10 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
-    /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: the bend of
-    /// a sheet over the faces beside it, which the angle between these faces includes, is taken out. It is 0 for
-    /// flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees where a crease is
-    /// pressed through itself.
+    /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: the bend
+    /// of a sheet over the faces beside it, which the angle between these faces includes, is taken out. It is
+    /// 0 for flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees where a
+    /// crease is pressed through itself.
     FoldAngle,
     /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length
     /// times the angle from where it rests, in radians. It is positive where the crease is folded further to
@@ -113,7 +113,8 @@ pub enum Quantity {
     Pressure,
     /// The pressure of a gas less that outside, or a pressure that is prescribed, pascals.
     GaugePressure,
-    /// The volume that a surface encloses around a gas, or on whose faces a pressure is prescribed, cubic metres.
+    /// The volume that a surface encloses around a gas, or on whose faces a pressure is prescribed, cubic
+    /// metres.
     Volume,
 }
 
@@ -430,8 +431,8 @@ pub(crate) struct CreaseGauge {
 }
 
 impl CreaseGauge {
-    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it. (Those of
-    /// other sheets have other numbers.)
+    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it. (Those
+    /// of other sheets have other numbers.)
     pub(crate) fn find_others(&mut self, of_sheet: &[(Arc<CreaseSprings>, usize)]) {
         if !of_sheet.iter().any(|(_, k)| *k == self.potential) {
             return;

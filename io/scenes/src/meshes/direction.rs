@@ -45,8 +45,8 @@ pub enum Direction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct TextureDirection {
-    /// The texture coordinate that grows along the direction, and steepest: of an OBJ file `vt`, of a glTF file
-    /// `TEXCOORD_0`, of a PLY file `s` and `t` or `u` and `v` of vertices, or `texcoord` of faces.
+    /// The texture coordinate that grows along the direction, and steepest: of an OBJ file `vt`, of a glTF
+    /// file `TEXCOORD_0`, of a PLY file `s` and `t` or `u` and `v` of vertices, or `texcoord` of faces.
     pub uv: TextureAxis,
 }
 
@@ -97,8 +97,8 @@ impl Direction {
         }
     }
 
-    /// As the engine has it, with vectors taken to space by `placed`. That of a texture is none before it is known
-    /// which face has which.
+    /// As the engine has it, with vectors taken to space by `placed`. That of a texture is none before it is
+    /// known which face has which.
     pub(crate) fn in_space(&self, placed: impl Fn([f64; 3]) -> [f64; 3]) -> MaterialDirection {
         match self {
             Self::Vector(vector) => MaterialDirection::Uniform(placed(*vector)),
@@ -111,8 +111,8 @@ impl Direction {
 /// Texture coordinates of the corners of a face, if it has them.
 pub(crate) type FaceTexture = Option<[[f64; 2]; 3]>;
 
-/// Part of the product of its two sides that the area of a face has at least in the texture: below, it is round-off of
-/// numbers with six digits.
+/// Part of the product of its two sides that the area of a face has at least in the texture: below, it is
+/// round-off of numbers with six digits.
 const LEAST_AREA: f64 = 1e-6;
 
 /// The gradients of a texture coordinate on the faces of a mesh, in its frame.

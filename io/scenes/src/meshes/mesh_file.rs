@@ -32,12 +32,12 @@ use std::sync::Arc;
 pub struct MeshFile {
     /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
-    /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A FOLD file with a unit of length
-    /// and a glTF file are in metres, and this is a factor besides.
+    /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A FOLD file with a unit of
+    /// length and a glTF file are in metres, and this is a factor besides.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z. To be left out for a glTF file, which has y upwards
-    /// by definition and is turned.
+    /// The axis of the file that points upwards; it becomes z. To be left out for a glTF file, which has y
+    /// upwards by definition and is turned.
     #[serde(default)]
     pub up: UpAxis,
     /// What to do with faces of more than three corners.

@@ -27,12 +27,13 @@ pub enum Selection {
     Boundary,
     /// Vertices by their numbers, from 0.
     Vertices(Vec<usize>),
-    /// Faces by their numbers, from 0, and their vertices. Where the sheet is refined, these are its faces after that,
-    /// as in the frames of a run.
+    /// Faces by their numbers, from 0, and their vertices. Where the sheet is refined, these are its faces
+    /// after that, as in the frames of a run.
     Faces(Vec<usize>),
-    /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a group, an
-    /// object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a node, a mesh or a
-    /// material, of a FOLD file an entry of `faces_isosheet:group`. `isosheet info` lists the groups of a file.
+    /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a
+    /// group, an object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a
+    /// node, a mesh or a material, of a FOLD file an entry of `faces_isosheet:group`. `isosheet info` lists
+    /// the groups of a file.
     Group(String),
     /// For each point (metres) the vertex nearest to it.
     Nearest(Vec<[f64; 3]>),
@@ -198,8 +199,8 @@ impl Selection {
         })
     }
 
-    /// The faces that are meant of a sheet, ascending: those by number or of the group, or those all corners of which
-    /// are selected.
+    /// The faces that are meant of a sheet, ascending: those by number or of the group, or those all corners
+    /// of which are selected.
     pub(crate) fn faces(&self, key: &Key, sheet: &InPlace<'_>) -> Result<Vec<FaceId>, Problem> {
         if let Some(mut faces) = self.named_faces(key, sheet)? {
             faces.sort_unstable();

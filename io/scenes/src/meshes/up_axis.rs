@@ -20,8 +20,8 @@ pub enum UpAxis {
 }
 
 impl UpAxis {
-    /// Refuses another axis than z for a file that says itself which one points upwards; `key` is the place of the
-    /// file in the scene.
+    /// Refuses another axis than z for a file that says itself which one points upwards; `key` is the place
+    /// of the file in the scene.
     pub(crate) fn check(self, path: &Path, key: &Key, checks: &mut Checks) {
         if self != Self::Z && says_up(path) {
             checks.report(

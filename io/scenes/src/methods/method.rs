@@ -27,9 +27,10 @@ pub struct Method {
     pub integrator: Integrator,
     /// Length of a step, seconds; the longest one where an accuracy is asked for.
     pub step: f64,
-    /// Largest estimated error that a part of a step may add to the positions, metres, as the root of the mean square
-    /// over the vertices, with `bdf2` and `implicit_euler`: steps are divided until it is met, down to
-    /// `min_fraction`. If left out, steps are as long as `step` says. See "The length of a step" in the chapter on methods.
+    /// Largest estimated error that a part of a step may add to the positions, metres, as the root of the
+    /// mean square over the vertices, with `bdf2` and `implicit_euler`: steps are divided until it is met,
+    /// down to `min_fraction`. If left out, steps are as long as `step` says. See "The length of a step" in
+    /// the chapter on methods.
     pub accuracy: Option<f64>,
     /// Largest relative length error of an accepted step, from 1e-15 to 0.01; if left out, that of the
     /// integrator (1e-12, or 2e-13 for conservative ones).

@@ -30,9 +30,9 @@ pub struct Output {
     pub obj: bool,
     /// Whether the 3D page of the run is written as `index.html`.
     pub page: bool,
-    /// Whether the page can show the curvature of the sheet across its rulings, and its Gauss curvature, as colours,
-    /// and `trajectory.npz` has them. They are made of the positions: pictures and VTK files can have them of every
-    /// run.
+    /// Whether the page can show the curvature of the sheet across its rulings, and its Gauss curvature, as
+    /// colours, and `trajectory.npz` has them. They are made of the positions: pictures and VTK files can
+    /// have them of every run.
     pub curvature: bool,
 }
 

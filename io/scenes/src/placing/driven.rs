@@ -28,8 +28,8 @@ pub(crate) struct DrivenObstacles {
 }
 
 impl DrivenObstacles {
-    /// Puts obstacles beside surfaces that end with vertex, edge and face of these numbers, and a model with so many
-    /// vertices; `motion` reads a mesh in motion at a place of the scene.
+    /// Puts obstacles beside surfaces that end with vertex, edge and face of these numbers, and a model with
+    /// so many vertices; `motion` reads a mesh in motion at a place of the scene.
     pub(crate) fn new(
         obstacles: &[Obstacle],
         mut end: [usize; 3],

@@ -124,8 +124,8 @@ impl<'a> PlacedSheets<'a> {
         })
     }
 
-    /// What each edge of the union is meant to do, if there is a crease pattern among the meshes; `None` for an
-    /// edge of which the pattern does not say it.
+    /// What each edge of the union is meant to do, if there is a crease pattern among the meshes; `None` for
+    /// an edge of which the pattern does not say it.
     pub(crate) fn fold_assignments(&self) -> Option<Vec<Option<FoldAssignment>>> {
         let of_sheet = |sheet: &PlacedSheet<'_>| match &sheet.form.roles {
             Some(roles) => roles.assignments.clone(),

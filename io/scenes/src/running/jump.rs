@@ -5,13 +5,13 @@ use crate::words::key::Key;
 use crate::{Problem, Scene};
 use isosheet_mesh::wording::brief;
 
-/// Part of its distance from the origin, or a metre, by which a place differs by round-off from where another function
-/// of time led to. Angles of rotations are found from their cosines, to the root of that.
+/// Part of its distance from the origin, or a metre, by which a place differs by round-off from where another
+/// function of time led to. Angles of rotations are found from their cosines, to the root of that.
 const ROUND_OFF: f64 = 1e-12;
 
-/// What is wrong with a change of a scene at time `t` (seconds) that leaves the obstacles in number: each keeps its
-/// shape, and goes on from where it is, since nothing on the way of a jump would be met. (A change that adds or removes
-/// obstacles makes new ones, which have to be clear of the sheet.)
+/// What is wrong with a change of a scene at time `t` (seconds) that leaves the obstacles in number: each
+/// keeps its shape, and goes on from where it is, since nothing on the way of a jump would be met. (A change
+/// that adds or removes obstacles makes new ones, which have to be clear of the sheet.)
 pub(crate) fn jumps(before: (&Scene, &Facts), after: (&Scene, &Facts), t: f64) -> Vec<Problem> {
     let ((before, old), (after, new_facts)) = (before, after);
     if before.obstacle.len() != after.obstacle.len() {

@@ -216,7 +216,8 @@ impl LiveScene {
         self.under_way.facts.of_vertices(forces, 3)
     }
 
-    /// Forces of the rods in the last step, newtons, see [`Simulation::rod_forces`]: zero of the edges of bodies.
+    /// Forces of the rods in the last step, newtons, see [`Simulation::rod_forces`]: zero of the edges of
+    /// bodies.
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         self.under_way
             .simulation
@@ -324,11 +325,11 @@ impl LiveScene {
     }
 
     /// Changes the scene between two steps by edits, in force from now on. What acts on the sheet may change:
-    /// forces, stiffnesses and angles of creases, damping, air, bodies, friction, the motions of supports; what
-    /// it is may not. Where supports and obstacles are is no matter of a change, they do not jump: see
-    /// [`LiveScene::drive`]; obstacles that are added have to be clear of the sheet.
-    /// What a change does at once counts as work ([`Simulation::changed_from`]). Meshes, plates and bodies that
-    /// it does not touch are not made again.
+    /// forces, stiffnesses and angles of creases, damping, air, bodies, friction, the motions of supports;
+    /// what it is may not. Where supports and obstacles are is no matter of a change, they do not jump: see
+    /// [`LiveScene::drive`]; obstacles that are added have to be clear of the sheet. What a change does at
+    /// once counts as work ([`Simulation::changed_from`]). Meshes, plates and bodies that it does not touch
+    /// are not made again.
     ///
     /// # Errors
     /// [`SceneFileError`]; then nothing has changed.

@@ -20,7 +20,8 @@ pub struct UnderWay {
     pub supports: SupportForces,
     /// The simulation.
     pub simulation: Simulation,
-    /// Forces of the supports in the last step (newtons), where something has been taken up or released since.
+    /// Forces of the supports in the last step (newtons), where something has been taken up or released
+    /// since.
     before: Option<Vec<[f64; 3]>>,
 }
 
@@ -68,8 +69,8 @@ impl UnderWay {
         stepped
     }
 
-    /// Takes up and releases what the step that has ended asks for, and goes on with it; what has happened. `hand`
-    /// is what somebody holds.
+    /// Takes up and releases what the step that has ended asks for, and goes on with it; what has happened.
+    /// `hand` is what somebody holds.
     ///
     /// # Errors
     /// [`SceneError`] if something cannot be taken up; then nothing has changed.

@@ -11,8 +11,8 @@ use isosheet_dynamics::Curvature;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A curvature that a sheet has by itself: paper that curls, a poster off a roll, a bilayer. It is given by radii, by its
-/// components, or by another shape of the mesh.
+/// A curvature that a sheet has by itself: paper that curls, a poster off a roll, a bilayer. It is given by
+/// radii, by its components, or by another shape of the mesh.
 ///
 /// ```toml
 /// [sheet]
@@ -22,12 +22,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Curl {
-    /// The direction along which the sheet is curved, in the frame of the mesh, of any length. If left out, that of the
-    /// sheet.
+    /// The direction along which the sheet is curved, in the frame of the mesh, of any length. If left out,
+    /// that of the sheet.
     #[serde(default)]
     pub along: Option<[f64; 3]>,
-    /// Radius of curvature, metres: positive where the sheet rolls up with the front of its faces inside, from
-    /// which their corners run counter-clockwise. If left out, the sheet is straight along the direction.
+    /// Radius of curvature, metres: positive where the sheet rolls up with the front of its faces inside,
+    /// from which their corners run counter-clockwise. If left out, the sheet is straight along the
+    /// direction.
     #[serde(default)]
     pub radius: Option<f64>,
     /// Radius of curvature across this direction, metres. If left out, the sheet is straight across.
@@ -39,12 +40,12 @@ pub struct Curl {
     /// In place of `across_radius`: curvature `k22` across it, 1/m.
     #[serde(default)]
     pub across_curvature: Option<f64>,
-    /// Twist `k12`, 1/m: the angle in radians by which a line across the direction turns in a metre. A narrow strip with this
-    /// alone is a helicoid.
+    /// Twist `k12`, 1/m: the angle in radians by which a line across the direction turns in a metre. A narrow
+    /// strip with this alone is a helicoid.
     #[serde(default)]
     pub twist: Option<f64>,
-    /// In place of all of these: a shape with the vertices and faces of `mesh`, whose curvature the sheet has, face by
-    /// face. Lengths stay those of `mesh`.
+    /// In place of all of these: a shape with the vertices and faces of `mesh`, whose curvature the sheet
+    /// has, face by face. Lengths stay those of `mesh`.
     #[serde(default)]
     pub shape: Option<MeshFile>,
     /// A factor of time by which the curvatures are multiplied.

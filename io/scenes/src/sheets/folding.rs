@@ -20,8 +20,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or a drawing
-/// with mountains and valleys.
+/// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or
+/// a drawing with mountains and valleys.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
 /// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of
@@ -29,10 +29,10 @@ use std::sync::Arc;
 /// enough. Angles that no such shape has are approached as far as the springs come to an equilibrium: the
 /// summary of the run says how large the differences are at the end.
 ///
-/// Mountains and valleys are driven to the angles that the file gives them (`edges_foldAngle` of FOLD files, the opacity
-/// of lines of SVG files), and where it gives none to 180 degrees; edges of the kinds `F`
-/// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
-/// not 0 and move freely elsewhere.
+/// Mountains and valleys are driven to the angles that the file gives them (`edges_foldAngle` of FOLD files,
+/// the opacity of lines of SVG files), and where it gives none to 180 degrees; edges of the kinds `F` and `J`
+/// and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is not 0
+/// and move freely elsewhere.
 ///
 /// ```toml
 /// [sheet]
@@ -73,8 +73,8 @@ pub struct Folding {
     #[serde(default)]
     #[schemars(with = "Option<foreign::FoldFrame>")]
     pub frame: Option<FoldFrame>,
-    /// Groups of creases that fold one after the other, each in an equal part of `time`. Creases of no group fold with
-    /// the last one. If left out, all fold at the same time.
+    /// Groups of creases that fold one after the other, each in an equal part of `time`. Creases of no group
+    /// fold with the last one. If left out, all fold at the same time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub order: Vec<FoldGroup>,
 }
@@ -113,7 +113,8 @@ pub struct FoldResidual {
     pub rms: f64,
     /// Largest fold angle of an edge that should stay flat.
     pub largest_flat: f64,
-    /// Number of driven creases that are folded to the other side: further from their angles than a flat sheet is.
+    /// Number of driven creases that are folded to the other side: further from their angles than a flat
+    /// sheet is.
     pub wrong_side: usize,
 }
 
@@ -170,8 +171,8 @@ impl FoldTargets {
     }
 }
 
-/// The fold angles of driven creases, followed through a motion: one that was folded the other way round is at -180
-/// degrees, and not at 180.
+/// The fold angles of driven creases, followed through a motion: one that was folded the other way round is
+/// at -180 degrees, and not at 180.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FollowedFolds {
     /// Radians, in the order of the creases.

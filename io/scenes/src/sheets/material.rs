@@ -15,9 +15,9 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// What the sheet is made of: the name of a material (materials.md lists all of them, with numbers and sources),
-/// or a `Plate`. A material gives the sheet its mass and bending stiffness, and makes it elastic; `density`, `mass`,
-/// `bending` and `isometry` beside it replace what it gives.
+/// What the sheet is made of: the name of a material (materials.md lists all of them, with numbers and
+/// sources), or a `Plate`. A material gives the sheet its mass and bending stiffness, and makes it elastic;
+/// `density`, `mass`, `bending` and `isometry` beside it replace what it gives.
 ///
 /// ```toml
 /// [sheet]
@@ -52,9 +52,9 @@ pub struct Plate {
     /// Poisson's ratio, from 0 to 0.5.
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
-    /// Of a material that is stiffer along the `direction` of the sheet than across, as laminates and wood are: Young's
-    /// modulus across it, Pa; `youngs` is that along it, and `poisson` the contraction across it by a pull along it, of
-    /// any sign.
+    /// Of a material that is stiffer along the `direction` of the sheet than across, as laminates and wood
+    /// are: Young's modulus across it, Pa; `youngs` is that along it, and `poisson` the contraction across it
+    /// by a pull along it, of any sign.
     #[serde(default)]
     pub youngs_across: Option<f64>,
     /// Of the same material the shear modulus, Pa.
@@ -71,8 +71,8 @@ pub(crate) fn typical_poisson() -> f64 {
     0.3
 }
 
-/// The range of Poisson's ratio of a material with a stiffness along its direction and one across it, whose root it must
-/// not exceed; that of isotropic ones without.
+/// The range of Poisson's ratio of a material with a stiffness along its direction and one across it, whose
+/// root it must not exceed; that of isotropic ones without.
 pub(crate) fn ratios(along: Option<f64>, across: Option<f64>) -> [f64; 2] {
     let most = along
         .zip(across)

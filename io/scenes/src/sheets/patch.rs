@@ -6,9 +6,9 @@ use crate::words::part::Part;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A part of a sheet that is of another material: a label, a reinforcement, a stiff board in a soft cover. Mass, stiffness in
-/// the plane and in bending, and the yield are those of its material; the distance of contact is that of the sheet.
-/// Where patches overlap, the last one counts.
+/// A part of a sheet that is of another material: a label, a reinforcement, a stiff board in a soft cover.
+/// Mass, stiffness in the plane and in bending, and the yield are those of its material; the distance of
+/// contact is that of the sheet. Where patches overlap, the last one counts.
 ///
 /// ```toml
 /// [sheet]

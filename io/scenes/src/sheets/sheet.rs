@@ -46,9 +46,10 @@ pub struct Sheet {
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
     pub material: Option<Material>,
-    /// The direction of the material: along the machine of paper, along the warp of cloth, along the fibres of a
-    /// laminate. A vector in the frame of the mesh, of any length, or a texture coordinate of the mesh file. A material that has two directions is stiffer along this one than
-    /// across; without the key it is the same in all directions, with the means of both.
+    /// The direction of the material: along the machine of paper, along the warp of cloth, along the fibres
+    /// of a laminate. A vector in the frame of the mesh, of any length, or a texture coordinate of the mesh
+    /// file. A material that has two directions is stiffer along this one than across; without the key it is
+    /// the same in all directions, with the means of both.
     #[serde(default)]
     pub direction: Option<Direction>,
     /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one
@@ -58,9 +59,9 @@ pub struct Sheet {
     /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
     #[serde(default)]
     pub mass: Option<f64>,
-    /// Thickness, metres: the least distance of its middle surface from bodies and from itself. From another sheet
-    /// it keeps the mean of both, so that a stack has its height. It does not change mass or stiffness. Faces with a
-    /// common vertex do not keep it: a fold is sharp at its line, and the layers open beside it.
+    /// Thickness, metres: the least distance of its middle surface from bodies and from itself. From another
+    /// sheet it keeps the mean of both, so that a stack has its height. It does not change mass or stiffness.
+    /// Faces with a common vertex do not keep it: a fold is sharp at its line, and the layers open beside it.
     #[serde(default)]
     pub thickness: f64,
     /// What keeps the lengths. If left out, the elasticity of the material; without one rigid rods.
@@ -75,13 +76,13 @@ pub struct Sheet {
     /// The curvature that it has by itself. If left out, none.
     #[serde(default)]
     pub curl: Option<Curl>,
-    /// The part by which all its lengths grow by themselves, a function of time from -0.2 to 0.2: negative for
-    /// paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
+    /// The part by which all its lengths grow by themselves, a function of time from -0.2 to 0.2: negative
+    /// for paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
     #[serde(default)]
     #[unit(Factor)]
     pub swell: Option<Profile>,
-    /// The factor of its resistance to bending, a function of time above 0: paper whose glue dries, film that is heated.
-    /// If left out, it stays.
+    /// The factor of its resistance to bending, a function of time above 0: paper whose glue dries, film that
+    /// is heated. If left out, it stays.
     #[serde(default)]
     #[unit(Factor)]
     pub stiffening: Option<Profile>,
@@ -134,14 +135,16 @@ pub enum Isometry {
         /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
         #[serde(default)]
         stiffness: Option<f64>,
-        /// Of a sheet with a `direction`, along which `stiffness` is: Young's modulus across it times thickness, N/m.
+        /// Of a sheet with a `direction`, along which `stiffness` is: Young's modulus across it times
+        /// thickness, N/m.
         #[serde(default)]
         across: Option<f64>,
         /// Of the same sheet the shear modulus times thickness, N/m.
         #[serde(default)]
         shear: Option<f64>,
-        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3. With `across` and `shear`
-        /// it is the contraction across the direction by a pull along it, of any sign, and 0.3 if left out.
+        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3. With `across`
+        /// and `shear` it is the contraction across the direction by a pull along it, of any sign, and 0.3 if
+        /// left out.
         #[serde(default)]
         poisson: Option<f64>,
         /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
@@ -153,8 +156,8 @@ pub enum Isometry {
     },
 }
 
-/// What bends are measured from: the shape that the sheet has without moments. (Creases have rest angles of their
-/// own.)
+/// What bends are measured from: the shape that the sheet has without moments. (Creases have rest angles of
+/// their own.)
 ///
 /// ```toml
 /// [sheet]
@@ -188,14 +191,14 @@ pub enum Bending {
     Plate {
         /// Flexural rigidity, N m: office paper has about 5e-4.
         rigidity: f64,
-        /// Poisson's ratio, from 0 to 0.5: how twist and bends in two directions at once compare with bends in
-        /// one. If left out, that of `isometry` or of the material; without one 0.3.
+        /// Poisson's ratio, from 0 to 0.5: how twist and bends in two directions at once compare with bends
+        /// in one. If left out, that of `isometry` or of the material; without one 0.3.
         #[serde(default)]
         poisson: Option<f64>,
     },
-    /// A plate that is stiffer along one direction than across, as paper, wood and laminates are: curvatures `k_1`
-    /// along the direction, `k_2` across and the twist `k_12` store `(along k_1^2 + 2 coupling k_1 k_2 + across
-    /// k_2^2 + 4 twist k_12^2) / 2` per area.
+    /// A plate that is stiffer along one direction than across, as paper, wood and laminates are: curvatures
+    /// `k_1` along the direction, `k_2` across and the twist `k_12` store
+    /// `(along k_1^2 + 2 coupling k_1 k_2 + across k_2^2 + 4 twist k_12^2) / 2` per area.
     Orthotropic {
         /// The direction, in the frame of the mesh, of any length. If left out, that of the sheet.
         #[serde(default)]
@@ -244,7 +247,8 @@ impl Sheet {
         }
     }
 
-    /// The numbers of the material, if the sheet has one that is known; the means of both directions where it names one.
+    /// The numbers of the material, if the sheet has one that is known; the means of both directions where it
+    /// names one.
     pub(crate) fn made_of(&self) -> Option<engine::Material> {
         let material = self.material.as_ref().and_then(Material::numbers)?;
         Some(match self.direction {

@@ -7,8 +7,9 @@ use crate::words::problem::Problem;
 use isosheet_files::{bytes_in_words, memory};
 use isosheet_mesh::wording::brief;
 
-/// Memory that a run needs for each face of its sheet at least, bytes, for its model and for the matrix of a step
-/// with its factors. Measured were 4700 for strips of one row of cells and 5500 for a square of 45 000 faces.
+/// Memory that a run needs for each face of its sheet at least, bytes, for its model and for the matrix of a
+/// step with its factors. Measured were 4700 for strips of one row of cells and 5500 for a square of 45 000
+/// faces.
 pub const MEMORY_OF_FACE: f64 = 4000.0;
 
 /// Number of faces above which generators of meshes refuse to make one, with a reason at its key.
@@ -29,8 +30,8 @@ pub(crate) fn check_memory(faces: f64, key: Key) -> Result<(), Problem> {
     Err(Problem::new(key, message, "make the mesh coarser"))
 }
 
-/// Refuses sheets of a scene that memory cannot hold together, as far as their numbers of faces are known before
-/// they are made; `key` is that of a sheet by its number.
+/// Refuses sheets of a scene that memory cannot hold together, as far as their numbers of faces are known
+/// before they are made; `key` is that of a sheet by its number.
 pub(crate) fn check_sheets(sheets: &[Sheet], key: impl Fn(usize) -> Key) -> Result<(), Problem> {
     let mut all = 0.0;
     for (k, sheet) in sheets.iter().enumerate() {
@@ -57,8 +58,8 @@ pub(crate) fn refined(times: usize) -> f64 {
 }
 
 impl Mesh {
-    /// The number of faces of a mesh that is made by formula, or about that; zero of a file, which is not read yet,
-    /// and of patterns that have a few.
+    /// The number of faces of a mesh that is made by formula, or about that; zero of a file, which is not
+    /// read yet, and of patterns that have a few.
     fn face_count(&self) -> f64 {
         let product = |a: usize, b: usize| a as f64 * b as f64;
         match self {

@@ -108,8 +108,8 @@ impl Spin {
     }
 }
 
-/// The velocities of points (metres) of what moves with a velocity (m/s) and a spin, and whose centre of mass is
-/// given, m/s.
+/// The velocities of points (metres) of what moves with a velocity (m/s) and a spin, and whose centre of mass
+/// is given, m/s.
 pub(crate) fn velocities(
     points: &[[f64; 3]],
     velocity: [f64; 3],

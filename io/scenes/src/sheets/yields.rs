@@ -29,8 +29,9 @@ pub struct SheetYield {
     /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is
     /// left out too, and otherwise 0.
     pub hardening: Option<f64>,
-    /// Number of layers of each half of the sheet, each of which yields by itself, at the points of Gauss and Legendre.
-    /// With 11, bends that stay have an error of 1 %; with 1, the sheet yields in the whole of its thickness at once.
+    /// Number of layers of each half of the sheet, each of which yields by itself, at the points of Gauss and
+    /// Legendre. With 11, bends that stay have an error of 1 %; with 1, the sheet yields in the whole of its
+    /// thickness at once.
     pub layers: usize,
 }
 

@@ -6,14 +6,15 @@ use crate::words::key::{Key, KeyPart};
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
-/// The values of a scene, by way of its text: what reads and writes texts of scenes is compiled once, and nothing else.
+/// The values of a scene, by way of its text: what reads and writes texts of scenes is compiled once, and
+/// nothing else.
 fn values(scene: &Scene) -> Option<toml::Value> {
     let text = toml::to_string(scene).ok()?;
     text.parse().ok().map(toml::Value::Table)
 }
 
-/// A scene with edits made in its values. None where its values have no such place, or the result is no scene: what
-/// is wrong with it, or right because of what its text leaves out, the text says.
+/// A scene with edits made in its values. None where its values have no such place, or the result is no
+/// scene: what is wrong with it, or right because of what its text leaves out, the text says.
 pub(crate) fn edited(scene: &Scene, edits: &[Edit]) -> Option<Scene> {
     let mut whole = values(scene)?;
     for Edit { key, value } in edits {
@@ -34,8 +35,8 @@ pub(crate) fn edited(scene: &Scene, edits: &[Edit]) -> Option<Scene> {
     Scene::deserialize(toml::Deserializer::parse(&text).ok()?).ok()
 }
 
-/// The text of a scene whose values at some keys differ from those of the text: each is written at its key, or with
-/// what it is in where the text has no place for it alone.
+/// The text of a scene whose values at some keys differ from those of the text: each is written at its key,
+/// or with what it is in where the text has no place for it alone.
 pub(crate) fn written(text: &str, scene: &Scene, keys: &[Key]) -> Option<String> {
     let mut document = text.parse::<DocumentMut>().ok()?;
     let whole = values(scene)?;

@@ -16,11 +16,12 @@ pub enum Panels {
         /// `sheet.refine`.
         refine: usize,
     },
-    /// Soft in their plane, so that they stretch on the way to a shape that no isometric motion leads to, with springs at the
-    /// edges of their triangles: where these are slender, the bending stiffness of the material would keep creases open.
+    /// Soft in their plane, so that they stretch on the way to a shape that no isometric motion leads to,
+    /// with springs at the edges of their triangles: where these are slender, the bending stiffness of the
+    /// material would keep creases open.
     Soft {
-        /// Stiffness in the plane beside the bending stiffness of the material over the square of the longest side of the
-        /// sheet.
+        /// Stiffness in the plane beside the bending stiffness of the material over the square of the longest
+        /// side of the sheet.
         stiffness: u32,
     },
 }
@@ -63,18 +64,18 @@ const SOFT_LIMIT: f64 = 0.4;
 /// Stiffness of a metre of the edges inside of soft panels beside that of creases.
 const SOFT_EDGES: f64 = 0.4;
 
-/// In how much time the springs reach their angles, in which steps, and when the run ends, seconds. Inertia of the panels
-/// is small then beside the springs, and each step turns a crease by a few degrees.
+/// In how much time the springs reach their angles, in which steps, and when the run ends, seconds. Inertia
+/// of the panels is small then beside the springs, and each step turns a crease by a few degrees.
 const TIME: f64 = 4.0;
 const STEP: f64 = 1.0 / 30.0;
 const END: f64 = 5.0;
 
-/// Stiffness of a metre of crease beside the bending stiffness of the material over the longest side of the sheet: creases
-/// that are stiffer bend the panels, and softer ones do not reach their angles.
+/// Stiffness of a metre of crease beside the bending stiffness of the material over the longest side of the
+/// sheet: creases that are stiffer bend the panels, and softer ones do not reach their angles.
 const CREASES: f64 = 20.0;
 
-/// The gap below which panels feel each other, beside the longest side of the sheet: half the thickness of office paper of
-/// 0.2 m. What is wider keeps creases of 180 degrees open, whose panels lie between others.
+/// The gap below which panels feel each other, beside the longest side of the sheet: half the thickness of
+/// office paper of 0.2 m. What is wider keeps creases of 180 degrees open, whose panels lie between others.
 const NEAR: f64 = 2.5e-4;
 
 impl FoldScene {
@@ -150,8 +151,8 @@ impl FoldScene {
         Ok(text)
     }
 
-    /// The time in which a crease turns a panel, over that of a sheet of office paper of 0.2 m: springs of the stiffness
-    /// `D / L` a metre turn masses of `density L^3` a metre.
+    /// The time in which a crease turns a panel, over that of a sheet of office paper of 0.2 m: springs of
+    /// the stiffness `D / L` a metre turn masses of `density L^3` a metre.
     fn slowness(&self) -> f64 {
         let paper = Material::office_paper();
         let density = Material::named(&self.material).map_or(paper.density, |m| m.density);

@@ -210,7 +210,8 @@ impl SceneFile {
         self.with_text(self.scene.build_with(kept))
     }
 
-    /// Makes everything that a simulation needs which goes on from a checkpoint: what holds is what held there.
+    /// Makes everything that a simulation needs which goes on from a checkpoint: what holds is what held
+    /// there.
     ///
     /// # Errors
     /// As [`SceneFile::build`]; [`SceneError`] if the checkpoint is that of another scene.

@@ -38,8 +38,8 @@ pub struct Poses {
     /// the first key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FramePose>,
-    /// The times at which the velocity really jumps, seconds: there the method begins anew. If left out, at each
-    /// pose; a smooth motion that was sampled has none, `[]`.
+    /// The times at which the velocity really jumps, seconds: there the method begins anew. If left out, at
+    /// each pose; a smooth motion that was sampled has none, `[]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kinks: Option<Vec<f64>>,
 }

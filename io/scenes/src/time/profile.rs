@@ -13,12 +13,12 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A function of time: a number, which stands for the same value at all times, or a `Course`. Its unit is that of
-/// what it drives: metres for a displacement, degrees for an angle, newtons for a load.
+/// A function of time: a number, which stands for the same value at all times, or a `Course`. Its unit is
+/// that of what it drives: metres for a displacement, degrees for an angle, newtons for a load.
 ///
-/// It is taken at the ends of steps. A function that turns back within a step by more than a quarter of its range, which
-/// is that of a sine with three steps in a period, and an angle of a motion that changes by more than half a turn in a
-/// step are refused.
+/// It is taken at the ends of steps. A function that turns back within a step by more than a quarter of its
+/// range, which is that of a sine with three steps in a period, and an angle of a motion that changes by more
+/// than half a turn in a step are refused.
 ///
 /// ```toml
 /// [[forces.load]]
@@ -82,8 +82,8 @@ pub enum Course {
         interpolation: Interpolation,
         /// Pairs of time (seconds) and value, in the order of time.
         keys: Vec<[f64; 2]>,
-        /// The times at which the rate really jumps, seconds: there the method begins anew. If left out, at each
-        /// keyframe; a smooth motion that was sampled has none, `[]`.
+        /// The times at which the rate really jumps, seconds: there the method begins anew. If left out, at
+        /// each keyframe; a smooth motion that was sampled has none, `[]`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         kinks: Option<Vec<f64>>,
     },

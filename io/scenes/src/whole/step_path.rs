@@ -8,8 +8,8 @@ use isosheet_dynamics::SheetModel;
 use isosheet_mesh::wording::{brief, given};
 use nalgebra::Vector3;
 
-/// Refuses steps in which inertia and loads alone take a sheet of some area (square metres) so far that its edges are
-/// lost in round-off.
+/// Refuses steps in which inertia and loads alone take a sheet of some area (square metres) so far that its
+/// edges are lost in round-off.
 pub(crate) fn check_step(
     scene: &Scene,
     model: &SheetModel,

@@ -20,8 +20,8 @@ pub(crate) struct Switches(Vec<Switch>);
 struct Switch {
     of: Holder,
     phase: Phase,
-    /// Of what was taken up in the course of the simulation the positions that it holds (`3V`, metres), as they
-    /// are where its motion is zero.
+    /// Of what was taken up in the course of the simulation the positions that it holds (`3V`, metres), as
+    /// they are where its motion is zero.
     rest: Option<Vec<f64>>,
     /// Of a seam the numbers of the pairs that have torn.
     torn: Vec<usize>,

@@ -7,11 +7,13 @@ use isosheet_mesh::wording::brief;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::PI;
 
-/// Part of its range that a function may turn back by within a step: that of a sine with three steps in a period. With
-/// two it may look as if it did not move at all (Shannon 1949, *Communication in the presence of noise*).
+/// Part of its range that a function may turn back by within a step: that of a sine with three steps in a
+/// period. With two it may look as if it did not move at all (Shannon 1949, *Communication in the presence of
+/// noise*).
 const TURNED_BACK: f64 = 0.25;
 
-/// Angle by which something may turn in a step, degrees: with more than half a turn it may have turned the other way.
+/// Angle by which something may turn in a step, degrees: with more than half a turn it may have turned the
+/// other way.
 const TURNED: f64 = 180.0;
 
 /// Functions that are the components of one vector, or one function.
@@ -123,8 +125,8 @@ fn keyframes(keys: Vec<[f64; 2]>) -> Profile {
     })
 }
 
-/// Which function of a group turns back too far in a step of `h` seconds, in which step (the time at its beginning),
-/// and how far.
+/// Which function of a group turns back too far in a step of `h` seconds, in which step (the time at its
+/// beginning), and how far.
 fn turned_back(group: &[(Key, Profile)], h: f64, until: f64) -> Option<(&Key, f64, f64)> {
     let width = |(_, f): &(Key, Profile)| {
         let [low, high] = f.range(until);
@@ -223,7 +225,8 @@ mod tests {
         });
         let sampled = sampled.fold(0.0, f64::max);
         let (_, found) = farthest_beyond(&function, h, 1.0).unwrap();
-        // The samples miss the most even position of the step by up to 5e-6 s, in which the ends change by 5e-4.
+        // The samples miss the most even position of the step by up to 5e-6 s, in which the ends change by
+        // 5e-4.
         assert!((sampled - found).abs() < 1e-3, "{sampled} and {found}");
     }
 

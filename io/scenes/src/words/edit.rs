@@ -144,8 +144,8 @@ fn replace(table: &mut Table, mut new: Table) {
     *table = new;
 }
 
-/// The item at a part of a key in another one; keys of tables are made where they are missing. A list with one
-/// entry is named as its entry is: `sheet.mass` of one `[[sheet]]`.
+/// The item at a part of a key in another one; keys of tables are made where they are missing. A list with
+/// one entry is named as its entry is: `sheet.mass` of one `[[sheet]]`.
 fn descend<'a>(item: &'a mut Item, part: &KeyPart) -> Option<&'a mut Item> {
     let item = match part {
         KeyPart::Name(_) if has_one_entry(item) => item.get_mut(0)?,

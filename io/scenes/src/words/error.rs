@@ -237,8 +237,8 @@ fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<us
     }
 }
 
-/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source is
-/// rendered without them.
+/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source
+/// is rendered without them.
 fn without_colours(text: &str) -> String {
     text.replace('\u{1b}', "\\u001b")
 }

@@ -7,8 +7,8 @@ use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
 use nalgebra::Vector3;
 
-/// Least height of a face, as a part of its longest edge. Below the root of the round-off, 1.5e-8, the cosine of
-/// the angle between two edges is one, and angles and areas of the face have no digit left.
+/// Least height of a face, as a part of its longest edge. Below the root of the round-off, 1.5e-8, the cosine
+/// of the angle between two edges is one, and angles and areas of the face have no digit left.
 const LEAST_HEIGHT: f64 = 1e-7;
 
 /// Largest part of the shortest edge that the round-off of coordinates may be.
@@ -24,7 +24,8 @@ pub(crate) fn shortest(lengths: &[f64]) -> f64 {
     lengths.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Refuses a sheet in its place whose faces are so narrow, or so far away, that their shape is lost in round-off.
+/// Refuses a sheet in its place whose faces are so narrow, or so far away, that their shape is lost in
+/// round-off.
 pub(crate) fn check_shape(sheet: &Sheet, key: &Key) -> Result<(), Problem> {
     for (f, corners) in sheet.topology().faces().iter().enumerate() {
         let [a, b, c] = corners.map(|v| Vector3::from(sheet.position(v)));

@@ -1,8 +1,8 @@
-//! Files within limits of memory and time, each in a process of its own: damaged ones of every format, and small ones that
-//! stand for much.
+//! Files within limits of memory and time, each in a process of its own: damaged ones of every format, and
+//! small ones that stand for much.
 //!
-//! A process may take what a valid file takes, and 64 MiB and a hundred times the length of its file besides. Its time on the
-//! processor ends a case that would not end by itself.
+//! A process may take what a valid file takes, and 64 MiB and a hundred times the length of its file besides.
+//! Its time on the processor ends a case that would not end by itself.
 
 use crate::targets::{TARGETS, target};
 use crate::{ALONE, bombs, folder, mutation, seeds};
@@ -19,7 +19,8 @@ const CASES: u32 = 4;
 /// Small files that stand for much, of each kind in `cargo test`.
 const BOMBS: u32 = 1;
 
-/// Seconds of the processor that a case may take: a hundred times what the slowest one takes on a slow machine.
+/// Seconds of the processor that a case may take: a hundred times what the slowest one takes on a slow
+/// machine.
 const SECONDS: u32 = 60;
 
 /// Kibibytes that any case may take besides what a valid file takes.

@@ -122,8 +122,8 @@ fn a_clamp_that_turns_takes_the_sheet_with_it() {
     assert!(x.abs() < 1e-3 && (z - (0.05 - 0.2)).abs() < 1e-3, "{x} {z}");
 }
 
-/// Two clamps, of which one slides: under its weight the sheet sags as a beam that is built in at both ends, by
-/// `q L^4 / (384 D)`, without tension.
+/// Two clamps, of which one slides: under its weight the sheet sags as a beam that is built in at both ends,
+/// by `q L^4 / (384 D)`, without tension.
 #[test]
 fn a_clamp_that_slides_holds_the_slope_alone() {
     let Material {

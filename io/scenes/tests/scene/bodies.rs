@@ -100,8 +100,8 @@ fn in_folder(folder: &Path, text: &str) -> Result<LiveScene, String> {
     LiveScene::start(file).map_err(|e| e.to_string())
 }
 
-/// A corner piece of three cubes is thrown with a spin: its centre is on a parabola, its momenta are those of its
-/// mass and inertia and remain, and so does its energy.
+/// A corner piece of three cubes is thrown with a spin: its centre is on a parabola, its momenta are those of
+/// its mass and inertia and remain, and so does its energy.
 #[test]
 fn a_corner_piece_falls_and_tumbles() {
     let folder = tempfile::tempdir().unwrap();
@@ -232,8 +232,8 @@ fn a_box_slides_down_an_inclined_plane() {
     );
 }
 
-/// A box that is pushed along a table, by a part of its weight that grows and stays between the two coefficients, rests;
-/// by one above both it slides, with the kinetic one.
+/// A box that is pushed along a table, by a part of its weight that grows and stays between the two
+/// coefficients, rests; by one above both it slides, with the kinetic one.
 #[test]
 fn the_static_coefficient_holds_what_the_kinetic_one_lets_slide() {
     let speed = |push: f64| {
@@ -276,7 +276,8 @@ fn the_static_coefficient_holds_what_the_kinetic_one_lets_slide() {
     );
 }
 
-/// A ball and a cylinder roll without sliding: `g sin a / (1 + I / m r^2)`. A cylinder is a prism, which rolls over its edges.
+/// A ball and a cylinder roll without sliding: `g sin a / (1 + I / m r^2)`. A cylinder is a prism, which
+/// rolls over its edges.
 #[test]
 fn a_ball_and_a_cylinder_roll_down_an_inclined_plane() {
     let (slope, radius, mass) = (0.3_f64, 0.05, 0.2);
@@ -346,8 +347,8 @@ fn boxes_stand_on_each_other() {
     assert!((floor.z / -weight - 1.0).abs() < 0.01, "{floor}");
 }
 
-/// A ball lies in a cloth that is held at two edges: the supports carry the weight of both. Of forces at rest the
-/// tolerance of scenes with bodies, 1e-4, leaves its root.
+/// A ball lies in a cloth that is held at two edges: the supports carry the weight of both. Of forces at rest
+/// the tolerance of scenes with bodies, 1e-4, leaves its root.
 #[test]
 fn a_ball_lies_in_a_hammock() {
     let mut live = live(&format!(

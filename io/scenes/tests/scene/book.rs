@@ -78,7 +78,8 @@ fn prose(page: &str) -> String {
     page.split("```").step_by(2).collect()
 }
 
-/// What links into a page may name behind `#`: its headings, as mdBook and GitHub write them, and anchors of its own.
+/// What links into a page may name behind `#`: its headings, as mdBook and GitHub write them, and anchors of
+/// its own.
 fn anchors(page: &str) -> BTreeSet<String> {
     let prose = prose(page);
     let headings = prose.lines().filter(|line| line.starts_with('#'));
@@ -94,8 +95,8 @@ fn anchors(page: &str) -> BTreeSet<String> {
     headings.chain(own).collect()
 }
 
-/// Pages refer to pages and sections that exist, those of the book to no file outside of it, and the table of contents
-/// has all of them.
+/// Pages refer to pages and sections that exist, those of the book to no file outside of it, and the table of
+/// contents has all of them.
 #[test]
 fn links_between_pages_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -60,8 +60,8 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Texture coordinates of any size that are turned by 45 degrees are the direction [1, 1, 0], the second one that
-/// across it: at the end of the sheet these differ.
+/// Texture coordinates of any size that are turned by 45 degrees are the direction [1, 1, 0], the second one
+/// that across it: at the end of the sheet these differ.
 #[test]
 fn turned_texture_coordinates_are_a_turned_direction() {
     let dir = tempfile::tempdir().unwrap();

@@ -13,9 +13,9 @@ fn top(live: &LiveScene, body: usize) -> f64 {
     heights.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// A cloth is pulled away from under a vase that stands on it: friction carries the vase along while the cloth slides
-/// beneath, and brakes it on the table afterwards, over `m u g t^2` in all, where the end of the cloth passes its foot
-/// at `t`: between the times at which it comes to the foot and leaves it.
+/// A cloth is pulled away from under a vase that stands on it: friction carries the vase along while the
+/// cloth slides beneath, and brakes it on the table afterwards, over `m u g t^2` in all, where the end of the
+/// cloth passes its foot at `t`: between the times at which it comes to the foot and leaves it.
 #[test]
 fn a_cloth_is_pulled_from_under_a_vase() {
     let (friction, radius, half, speed) = (0.2, 0.03, 0.25, 3.0);
@@ -96,7 +96,8 @@ fn card_house(friction: f64, degrees: f64) -> String {
     text
 }
 
-/// Thin cards that lean at an angle `a` from upright stand if friction is above `tan(a) / 2`, and slide apart below.
+/// Thin cards that lean at an angle `a` from upright stand if friction is above `tan(a) / 2`, and slide apart
+/// below.
 #[test]
 fn a_house_of_cards_stands_by_friction() {
     let degrees = 20.0_f64;
@@ -110,8 +111,8 @@ fn a_house_of_cards_stands_by_friction() {
     }
 }
 
-/// Dominoes fall one after the other, and faster from one to the next up to the speed of a long row, which is a small
-/// multiple of the root of `g` times their height.
+/// Dominoes fall one after the other, and faster from one to the next up to the speed of a long row, which is
+/// a small multiple of the root of `g` times their height.
 #[test]
 fn dominoes_fall_in_a_row() {
     let (count, [thick, wide, high], pitch) = (8, [0.0075, 0.024, 0.048], 0.0275);

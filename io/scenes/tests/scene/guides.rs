@@ -5,8 +5,8 @@ use isosheet_scenes::LiveScene;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-/// The period of a pendulum that swings with an amplitude, in that of small swings: by the arithmetic-geometric
-/// mean.
+/// The period of a pendulum that swings with an amplitude, in that of small swings: by the
+/// arithmetic-geometric mean.
 fn slowed(amplitude: f64) -> f64 {
     let (mut a, mut g) = (1.0, (0.5 * amplitude).cos());
     for _ in 0..6 {
@@ -15,8 +15,8 @@ fn slowed(amplitude: f64) -> f64 {
     1.0 / a
 }
 
-/// A rod on a hinge at its end swings with the period of the physical pendulum, `2 pi (I / m g s)^(1/2)` for small
-/// amplitudes. At its lowest place the hinge carries weight and centrifugal force.
+/// A rod on a hinge at its end swings with the period of the physical pendulum, `2 pi (I / m g s)^(1/2)` for
+/// small amplitudes. At its lowest place the hinge carries weight and centrifugal force.
 #[test]
 fn a_rod_on_a_hinge_is_a_physical_pendulum() {
     let (length, side, mass) = (0.4, 0.02, 0.5);
@@ -72,8 +72,8 @@ fn a_rod_on_a_hinge_is_a_physical_pendulum() {
     }
 }
 
-/// A wheel on a hinge through its centre, that a torque turns: `I dw/dt = T`, over many turns; and a spring there
-/// that counts turns and brings it back.
+/// A wheel on a hinge through its centre, that a torque turns: `I dw/dt = T`, over many turns; and a spring
+/// there that counts turns and brings it back.
 #[test]
 fn a_torque_turns_a_wheel_about_its_centre() {
     let (radius, mass, torque) = (0.1, 1.0, 0.05);
@@ -125,8 +125,8 @@ fn a_torque_turns_a_wheel_about_its_centre() {
     assert!(speed < 1e-3, "{speed}");
 }
 
-/// A damped oscillator on a slider that leans: `m s'' = m g sin a - c s' - k s`, with the closed form, and the force
-/// of the guide across it.
+/// A damped oscillator on a slider that leans: `m s'' = m g sin a - c s' - k s`, with the closed form, and
+/// the force of the guide across it.
 #[test]
 fn a_body_on_a_slider_is_a_damped_oscillator() {
     let (mass, stiffness, damping, slope) = (0.2, 20.0, 0.4, 0.5_f64);
@@ -172,8 +172,9 @@ fn a_body_on_a_slider_is_a_damped_oscillator() {
     assert!((centre(&live, 0).dot(&along) / rest - 1.0).abs() < 1e-3);
 }
 
-/// A top on a ball joint at its foot precesses at the rate `W` for which `I1 W^2 cos a - I3 w3 W + m g s = 0`, with the
-/// inertia `I1` across its axis and `I3` along it, the rate `w3` about it and its lean `a`.
+/// A top on a ball joint at its foot precesses at the rate `W` for which
+/// `I1 W^2 cos a - I3 w3 W + m g s = 0`, with the inertia `I1` across its axis and `I3` along it, the rate
+/// `w3` about it and its lean `a`.
 #[test]
 fn a_top_on_a_ball_joint_precesses() {
     let (mass, radius, height, above) = (0.1, 0.05, 0.01, 0.04);
@@ -300,7 +301,8 @@ fn a_cloth_is_glued_to_a_pole() {
     assert!((carried / weight - 1.0).abs() < 5e-3, "{carried} {weight}");
 }
 
-/// A force that follows a function of time accelerates a body, off its centre it turns it; and it can be driven.
+/// A force that follows a function of time accelerates a body, off its centre it turns it; and it can be
+/// driven.
 #[test]
 fn a_force_pushes_a_body_where_it_acts() {
     let mut live = live(&format!(

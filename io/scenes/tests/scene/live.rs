@@ -324,8 +324,8 @@ fn lengths_of_steps_are_positive() {
     }
 }
 
-/// The text of a scene that was changed is that of the scene as it is, with its comments: what was changed stands in
-/// its place, also where the text has left out what it is in.
+/// The text of a scene that was changed is that of the scene as it is, with its comments: what was changed
+/// stands in its place, also where the text has left out what it is in.
 #[test]
 fn the_text_of_a_changed_scene_is_that_of_the_scene() {
     let text = HANGING.replace("[forces]\n", "[forces] # on earth\n") + "[air]\ndensity = 1\n";
@@ -356,8 +356,8 @@ fn the_text_of_a_changed_scene_is_that_of_the_scene() {
     assert!(format!("{course:?}").contains("to: 3.0"), "{course:?}");
 }
 
-/// An obstacle that a change puts elsewhere would have passed through what is on its way; one that moves on from where
-/// it is meets the sheet.
+/// An obstacle that a change puts elsewhere would have passed through what is on its way; one that moves on
+/// from where it is meets the sheet.
 #[test]
 fn obstacles_do_not_jump() {
     let mut live = live(

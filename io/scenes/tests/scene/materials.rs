@@ -346,8 +346,8 @@ fn wrong_materials_are_told_with_what_to_write() {
     }
 }
 
-/// A material with two directions has them where the sheet names one, in its plane and in its bends: numbers in words,
-/// of a name, of moduli, and of tests in the plane alone.
+/// A material with two directions has them where the sheet names one, in its plane and in its bends: numbers
+/// in words, of a name, of moduli, and of tests in the plane alone.
 #[test]
 fn a_sheet_has_the_directions_of_its_material_where_it_names_one() {
     let paper = dynamics::Material::office_paper();

@@ -9,7 +9,8 @@ const SLOPE: f64 = 0.3;
 /// Friction at which nothing slides down the slope, and one at which everything does.
 const FRICTION: [f64; 2] = [0.9, 0.1];
 
-/// What slides along a plane that is tilted by the direction of gravity, on which friction is large but for the pairs.
+/// What slides along a plane that is tilted by the direction of gravity, on which friction is large but for
+/// the pairs.
 fn tilted(rest: &str, pairs: &[[&str; 2]]) -> LiveScene {
     let [rest_friction, pair_friction] = FRICTION;
     let pairs: String = pairs

@@ -55,8 +55,8 @@ fn the_mass_is_that_of_all_patches() {
     assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
 }
 
-/// A cantilever whose halves have the weights `q_1`, `q_2` and rigidities `D_1`, `D_2`: with the moment `M(x)` of the
-/// weight beyond, its tip sinks by the integral of `M (L - x) / D`.
+/// A cantilever whose halves have the weights `q_1`, `q_2` and rigidities `D_1`, `D_2`: with the moment
+/// `M(x)` of the weight beyond, its tip sinks by the integral of `M (L - x) / D`.
 #[test]
 fn a_strip_of_two_materials_hangs_as_a_beam_of_two_pieces() {
     let gravity = 0.01;
@@ -142,7 +142,8 @@ fn patches_that_make_no_sense_are_refused() {
     }
 }
 
-/// A patch of the material of the sheet changes nothing; a directed one lies along the direction of the sheet.
+/// A patch of the material of the sheet changes nothing; a directed one lies along the direction of the
+/// sheet.
 #[test]
 fn patches_may_yield_and_have_directions() {
     let start = |lines: &str| {

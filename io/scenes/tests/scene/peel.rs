@@ -11,8 +11,8 @@ const STEP: f64 = 0.01;
 const RIGIDITY: f64 = 1e-4;
 const WIDTH: f64 = 0.01;
 
-/// A strip of film, 10 mm by 150 mm, that is glued to a plate which is held everywhere. Its end is drawn upwards
-/// and is free to follow the front.
+/// A strip of film, 10 mm by 150 mm, that is glued to a plate which is held everywhere. Its end is drawn
+/// upwards and is free to follow the front.
 fn scene() -> String {
     let sheet = |name: &str| {
         format!(
@@ -46,11 +46,11 @@ fn scene() -> String {
     )
 }
 
-/// Rows of pairs tear one after the other from the end. Per length the pairs take `n f^2 / (2 k a)`, which is the
-/// force of a film that is drawn off at a right angle and cannot stretch. The force rises until the next row tears:
-/// then the edge of the bond is less than a row ahead of its springs, where the film, a beam on a foundation of
-/// `n k / a`, is away from the plate by at most the factor `1 + a (n k / (4 D b a))^(1/4)`, of which the energy has
-/// the square.
+/// Rows of pairs tear one after the other from the end. Per length the pairs take `n f^2 / (2 k a)`, which is
+/// the force of a film that is drawn off at a right angle and cannot stretch. The force rises until the next
+/// row tears: then the edge of the bond is less than a row ahead of its springs, where the film, a beam on a
+/// foundation of `n k / a`, is away from the plate by at most the factor `1 + a (n k / (4 D b a))^(1/4)`, of
+/// which the energy has the square.
 #[test]
 fn a_film_is_peeled_off_by_the_force_of_its_fracture_energy() {
     let text = scene();

@@ -58,7 +58,8 @@ fn guided_bodies_part_no_faster_than_they_met() {
         }
     }
     for speed in [0.1, 0.3, 1.0] {
-        // A wall pushes an arm in its middle; the middle runs away no faster than twice the speed of the wall.
+        // A wall pushes an arm in its middle; the middle runs away no faster than twice the speed of the
+        // wall.
         let scene = format!(
             "{ASIDE}[[body]]\nshape = {{ box = {{ size = [0.02, 0.2, 0.02] }} }}\nmass = 0.02\n\
              guide = {{ hinge = {{ point = [0, 0.1, 0], axis = [0, 0, 1] }} }}\n\
@@ -80,8 +81,8 @@ fn guided_bodies_part_no_faster_than_they_met() {
     }
 }
 
-/// The speed at which the ball and the box part after these steps, and more of the last one, over that at which they
-/// met.
+/// The speed at which the ball and the box part after these steps, and more of the last one, over that at
+/// which they met.
 fn parted(mut live: LiveScene, speed: f64, steps: impl IntoIterator<Item = f64>) -> f64 {
     let mut gone = false;
     let mut last = H;
@@ -144,8 +145,8 @@ fn bodies_part_no_faster_than_they_met_in_random_steps() {
     }
 }
 
-/// Bodies of any shape that meet aside of their centres, turning, with friction, in any divisions of steps: they have no
-/// more energy afterwards.
+/// Bodies of any shape that meet aside of their centres, turning, with friction, in any divisions of steps:
+/// they have no more energy afterwards.
 #[test]
 fn bodies_that_meet_aside_gain_no_energy_in_random_steps() {
     let mut rng = ChaCha8Rng::seed_from_u64(isosheet_random::seed());

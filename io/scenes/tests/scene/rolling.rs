@@ -4,8 +4,8 @@ use crate::bodies::{ASIDE, G, centre, live, velocity};
 use isosheet_scenes::LiveScene;
 use nalgebra::Vector3;
 
-/// The acceleration of a body on what is below it along x, where gravity points down a slope: over the second half of
-/// a time, as bodies have settled by then.
+/// The acceleration of a body on what is below it along x, where gravity points down a slope: over the second
+/// half of a time, as bodies have settled by then.
 fn acceleration(live: &mut LiveScene, step: f64, duration: f64) -> f64 {
     let count = (0.5 * duration / step).round() as usize;
     let mut speeds = [0.0; 2];
@@ -55,7 +55,8 @@ fn balls_roll_down_at_five_sevenths() {
     }
 }
 
-/// However the ball is turned, and on whatever it rolls: a box that is an obstacle, and one that is a heavy body itself.
+/// However the ball is turned, and on whatever it rolls: a box that is an obstacle, and one that is a heavy
+/// body itself.
 #[test]
 fn balls_roll_on_boxes() {
     let table = "[[obstacle]]\nshape = { box = { size = [4, 4, 1] } }\npose = { position = [0, 0, -0.5] }\nfriction = 0.8\n";
@@ -96,8 +97,8 @@ fn capsules_roll() {
     }
 }
 
-/// Balls and capsules stop each other, whichever way they meet, and stop at obstacles, with friction and without: at
-/// the distance of their surfaces, which is that of points and segments.
+/// Balls and capsules stop each other, whichever way they meet, and stop at obstacles, with friction and
+/// without: at the distance of their surfaces, which is that of points and segments.
 #[test]
 fn round_bodies_do_not_enter_each_other() {
     let ball = |x: f64, vx: f64| {
@@ -217,8 +218,8 @@ fn clearance(live: &LiveScene) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// A ball that is thrown into a hammock keeps its surface outside of the cloth and its thickness at each step, the
-/// balance of the energy holds, and a run that is resumed goes on bit for bit.
+/// A ball that is thrown into a hammock keeps its surface outside of the cloth and its thickness at each
+/// step, the balance of the energy holds, and a run that is resumed goes on bit for bit.
 #[test]
 fn a_ball_thrown_into_a_hammock_stays_on_it() {
     let mut live = live(&hammock());

@@ -9,7 +9,8 @@ const LENGTH: f64 = 0.1;
 /// The length of the clamp at the beginning of the first strip.
 const CLAMP: f64 = 0.01;
 
-/// Two strips that are glued end to end, the first one clamped, with a load at the end of the second one, newtons.
+/// Two strips that are glued end to end, the first one clamped, with a load at the end of the second one,
+/// newtons.
 fn cantilever(bend: &str, load: f64) -> String {
     let strip = |name: &str, x: f64| {
         format!(
@@ -40,8 +41,8 @@ fn tip(scene: &str) -> [f64; 3] {
     run.state().vertex_positions()[33 + 21]
 }
 
-/// The deflection of a beam with a torsion spring: `F L^3 / (3 D w)`, and the turn `F s / (k w)` of the spring, over its
-/// distance `s` from the end.
+/// The deflection of a beam with a torsion spring: `F L^3 / (3 D w)`, and the turn `F s / (k w)` of the
+/// spring, over its distance `s` from the end.
 #[test]
 fn a_cantilever_of_two_strips_deflects_by_its_seam_besides() {
     let (force, arm, free) = (2e-5, LENGTH, 2.0 * LENGTH - CLAMP);

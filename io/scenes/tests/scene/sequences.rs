@@ -132,8 +132,8 @@ fn what_cannot_be_followed_is_refused() {
     }
 }
 
-/// A ball of triangles about the origin: an octahedron whose faces are cut into four, twice, with corners on the
-/// sphere.
+/// A ball of triangles about the origin: an octahedron whose faces are cut into four, twice, with corners on
+/// the sphere.
 fn ball(radius: f64) -> Sheet {
     let corners = [
         [1, 0, 0],
@@ -173,15 +173,16 @@ fn scaled(x: &[f64], factor: f64, by: [f64; 3]) -> Vec<f64> {
     moved(&larger, by)
 }
 
-/// A cloth that hangs on two corners, held above a ball, with a stiffness that does not depend on what else moves.
+/// A cloth that hangs on two corners, held above a ball, with a stiffness that does not depend on what else
+/// moves.
 const HELD: &str = "version = 1\n[sheet]\nmaterial = \"cotton\"\ndamping = 1\n\
      mesh = { rectangle = { width = 0.2, height = 0.2, columns = 10, rows = 10 } }\n\
      placement = { position = [-0.1, -0.1, 0] }\n\
      [forces]\ngravity = [0, 0, -9.81]\n[contact]\nactivation = 0.004\nstiffness = 1e-4\nrest_speed = 1e-3\n\
      [[support]]\nat = { vertices = [0, 10] }\n";
 
-/// A ball that comes up bends a clamped strip of card as the same ball does that is moved by a profile, with friction.
-/// The forces on it are the same too.
+/// A ball that comes up bends a clamped strip of card as the same ball does that is moved by a profile, with
+/// friction. The forces on it are the same too.
 #[test]
 fn a_mesh_in_motion_that_does_not_deform_is_a_body_that_moves() {
     let dir = tempfile::tempdir().unwrap();
@@ -252,7 +253,8 @@ fn a_mesh_in_motion_that_does_not_deform_is_a_body_that_moves() {
     assert_eq!(found.facts().parts[1].0, "obstacle_0");
 }
 
-/// A ball that breathes lifts a free cloth that lies on it, without penetration, and bears its weight on the average.
+/// A ball that breathes lifts a free cloth that lies on it, without penetration, and bears its weight on the
+/// average.
 #[test]
 fn a_breathing_ball_lifts_a_cloth() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! Sheets of several materials in one scene: rods beside elastic sheets, and numbers that each sheet has of its own.
+//! Sheets of several materials in one scene: rods beside elastic sheets, and numbers that each sheet has of
+//! its own.
 
 use crate::bodies::{centre, live, play};
 use crate::{parse, simulation};
@@ -127,12 +128,13 @@ fn a_heavy_body_far_away_changes_nothing_of_a_sheet_at_its_limit() {
         }
         run.state().x[3 * 21]
     });
-    // The stretch is 0.2 to 0.4 mm. (Steps of scenes with rods, those of the body, have a tolerance of their own.)
+    // The stretch is 0.2 to 0.4 mm. (Steps of scenes with rods, those of the body, have a tolerance of their
+    // own.)
     assert!((alone - beside).abs() < 1e-6, "{alone} {beside}");
 }
 
-/// A sheet of felt of 3 mm on a table and a card of 1 mm on it: middle surfaces lie 3 mm above the table and (3 + 1) / 2
-/// mm above the felt, and what the barrier leaves.
+/// A sheet of felt of 3 mm on a table and a card of 1 mm on it: middle surfaces lie 3 mm above the table and
+/// (3 + 1) / 2 mm above the felt, and what the barrier leaves.
 #[test]
 fn a_stack_of_sheets_of_several_thicknesses_has_its_height() {
     let activation = 2e-4;
@@ -171,7 +173,8 @@ fn a_stack_of_sheets_of_several_thicknesses_has_its_height() {
     }
 }
 
-/// A sheet that is thrown at another one at several metres per second stays away by the mean of both thicknesses.
+/// A sheet that is thrown at another one at several metres per second stays away by the mean of both
+/// thicknesses.
 #[test]
 fn a_thick_sheet_that_is_thrown_keeps_its_distance() {
     let scene = "version = 1\n\
@@ -216,8 +219,8 @@ fn the_thickness_of_a_sheet_is_none_of_bodies() {
     );
 }
 
-/// A clamped strip with a load at its end stays bent where the moment at the clamp was beyond that at which it yields,
-/// and springs back where it was not. Both have the same stiffness.
+/// A clamped strip with a load at its end stays bent where the moment at the clamp was beyond that at which
+/// it yields, and springs back where it was not. Both have the same stiffness.
 #[test]
 fn each_of_several_sheets_yields_by_itself() {
     let strip = |name: &str, y: f64, moment: f64| {

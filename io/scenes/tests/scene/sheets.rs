@@ -72,7 +72,8 @@ fn sheets_that_do_not_meet_move_as_each_does_alone() {
     ];
     assert!(bends.iter().all(|bend| *bend > 1e-3), "{bends:?}");
     let apart = difference(&both.state().x, &alone);
-    // A step ends where the round-off of the energy hides a further decrease, and a bend goes with the root of it.
+    // A step ends where the round-off of the energy hides a further decrease, and a bend goes with the root
+    // of it.
     assert!(apart < 1e-3 * bends[0].min(bends[1]), "{apart}");
 }
 

@@ -226,7 +226,8 @@ fn contact_begins_and_ends() {
     assert!(text.contains("let them be apart"), "{text}");
 }
 
-/// A strip that two clamps hold in turn, elastic and yielding: the second one holds place and slope where they are.
+/// A strip that two clamps hold in turn, elastic and yielding: the second one holds place and slope where
+/// they are.
 #[test]
 fn a_clamp_is_taken_up_where_the_sheet_is_and_the_other_one_released() {
     for yields in ["", "yield = { moment = 1e-3 }"] {
@@ -315,7 +316,8 @@ fn what_cannot_come_and_go_is_said_at_the_start() {
     }
 }
 
-/// Where nothing is free at the start, the barrier is as stiff as without weight, and the sheet lands when it is let go.
+/// Where nothing is free at the start, the barrier is as stiff as without weight, and the sheet lands when it
+/// is let go.
 #[test]
 fn a_sheet_that_is_held_whole_may_fall_later() {
     let mut live = live(&format!(

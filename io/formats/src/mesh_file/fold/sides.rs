@@ -33,8 +33,8 @@ pub(super) fn sides_of<C: Copy + TryInto<u32>>(
     })
 }
 
-/// Whether faces are those of a crease pattern with these edges: every crease is a side of one, and no outline goes to and
-/// fro along an edge.
+/// Whether faces are those of a crease pattern with these edges: every crease is a side of one, and no
+/// outline goes to and fro along an edge.
 pub(super) fn fit(faces: &[Vec<i64>], edges: &[FileCrease]) -> bool {
     let turns_back = |face: &Vec<i64>| {
         let n = face.len();

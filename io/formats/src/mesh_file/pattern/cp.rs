@@ -1,11 +1,12 @@
-//! Crease patterns of ORIPA and Oriedita as text (`.cp`): a line `kind x1 y1 x2 y2` for each line of the drawing.
+//! Crease patterns of ORIPA and Oriedita as text (`.cp`): a line `kind x1 y1 x2 y2` for each line of the
+//! drawing.
 
 use super::Segment;
 use crate::mesh_file::EdgeAssignment;
 use isosheet_files::DataError;
 
-/// What a line of one of the kinds of these programs is meant to do: 1 the outline, 2 a mountain, 3 a valley, 4 and 0
-/// auxiliary lines, which stay flat.
+/// What a line of one of the kinds of these programs is meant to do: 1 the outline, 2 a mountain, 3 a valley,
+/// 4 and 0 auxiliary lines, which stay flat.
 pub(super) fn assignment(kind: &str) -> Option<EdgeAssignment> {
     Some(match kind {
         "1" => EdgeAssignment::Boundary,
@@ -16,7 +17,8 @@ pub(super) fn assignment(kind: &str) -> Option<EdgeAssignment> {
     })
 }
 
-/// The lines of the drawing, in which y points downwards, with the numbers of their lines in the text for errors.
+/// The lines of the drawing, in which y points downwards, with the numbers of their lines in the text for
+/// errors.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, (usize, DataError)> {
     let text = String::from_utf8_lossy(bytes);
     let mut segments = Vec::new();

@@ -4,12 +4,13 @@ use super::faces::root;
 use crate::mesh_file::{EdgeAssignment, FileCrease, Point, distance};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Of the edges that lead nowhere the number of those of the outline or of cuts that are inside of a face, and the ends of
-/// the others at gaps in the outline.
+/// Of the edges that lead nowhere the number of those of the outline or of cuts that are inside of a face,
+/// and the ends of the others at gaps in the outline.
 ///
-/// A crease has the sheet on both of its sides. Where a crease is at the border of what the lines enclose, a face is
-/// missing beside it, and the ends of lines outside are those of a gap; elsewhere they are drawn too far, and enclose
-/// nothing. Lines that are connected to no face at all are an outline with a gap, if they are not straight.
+/// A crease has the sheet on both of its sides. Where a crease is at the border of what the lines enclose, a
+/// face is missing beside it, and the ends of lines outside are those of a gap; elsewhere they are drawn too
+/// far, and enclose nothing. Lines that are connected to no face at all are an outline with a gap, if they
+/// are not straight.
 pub(super) fn of(
     points: &[Point],
     edges: &[FileCrease],
@@ -104,8 +105,8 @@ fn is_straight(points: &[Point], near: f64) -> bool {
     points.iter().all(|p| distance(*p, [end, other]) <= near)
 }
 
-/// Whether a point is in one of some faces, whose border has these sides: whether a ray from it to the right crosses an
-/// odd number of them.
+/// Whether a point is in one of some faces, whose border has these sides: whether a ray from it to the right
+/// crosses an odd number of them.
 fn is_within(p: Point, border: &[[i64; 2]], points: &[Point]) -> bool {
     let sides = border.iter().map(|ends| ends.map(|v| points[v as usize]));
     let crossed = sides.filter(|[a, b]| {

@@ -7,7 +7,8 @@ use roxmltree::Node;
 
 /// The lines of the drawing, in which y points downwards.
 ///
-/// A line is an object of the class `OriLineProxy`, whose `type` is as in CP files. Coordinates of 0 are left out.
+/// A line is an object of the class `OriLineProxy`, whose `type` is as in CP files. Coordinates of 0 are left
+/// out.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, DataError> {
     let text = String::from_utf8_lossy(bytes);
     let document = xml::parse(text.trim_start_matches('\u{feff}'), Entities::Refused);

@@ -102,12 +102,12 @@ impl Points {
     }
 }
 
-/// Divides edges where others cross them or end on them within a distance, makes one of those that lie on each other,
-/// leaves out those that lead nowhere, and finds the faces.
+/// Divides edges where others cross them or end on them within a distance, makes one of those that lie on
+/// each other, leaves out those that lead nowhere, and finds the faces.
 ///
 /// # Errors
-/// [`DataError`] for edges without length, for lines that meet more often than a drawing of so many lines has it, and for
-/// a drawing with a part inside of a face of another part.
+/// [`DataError`] for edges without length, for lines that meet more often than a drawing of so many lines has
+/// it, and for a drawing with a part inside of a face of another part.
 pub(crate) fn planar(
     given: Vec<Point>,
     edges: &[FileCrease],
@@ -213,7 +213,8 @@ fn meeting(
     }
 }
 
-/// What is meant where lines lie on each other: an outline or a cut hides a crease, and a crease what stays flat.
+/// What is meant where lines lie on each other: an outline or a cut hides a crease, and a crease what stays
+/// flat.
 fn rank(assignment: EdgeAssignment) -> u8 {
     match assignment {
         EdgeAssignment::Boundary => 4,
@@ -265,8 +266,8 @@ impl Planar {
         }
     }
 
-    /// Makes the parts of the edges between the points on them. Where those that are meant to do different things lie on
-    /// each other, the sheet folds freely.
+    /// Makes the parts of the edges between the points on them. Where those that are meant to do different
+    /// things lie on each other, the sheet folds freely.
     fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) {
         struct Known {
             at: usize,

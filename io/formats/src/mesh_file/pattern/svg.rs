@@ -10,9 +10,9 @@ use std::f64::consts::PI;
 /// Curves become lines that turn by so much at most, radians: 10 degrees.
 const TURN: f64 = PI / 18.0;
 
-/// The lines of the drawing: black the outline, red a mountain, blue a valley, green a cut, yellow what stays flat,
-/// magenta what folds freely. The opacity of mountains and valleys is their fold angle as a part of 180 degrees. Lines of
-/// other colours and shapes without a stroke are none of the pattern, and counted.
+/// The lines of the drawing: black the outline, red a mountain, blue a valley, green a cut, yellow what stays
+/// flat, magenta what folds freely. The opacity of mountains and valleys is their fold angle as a part of 180
+/// degrees. Lines of other colours and shapes without a stroke are none of the pattern, and counted.
 pub(crate) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> {
     let drawing = svg::parse(bytes, svg::Areas::LeftOut, None, 1.0)?;
     let (mut drawn, numbers) = DrawnLines::of_pens(&drawing.pens);

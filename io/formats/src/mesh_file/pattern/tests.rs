@@ -68,8 +68,8 @@ fn a_square_with_a_diagonal_is_the_same_in_all_formats() {
     assert_eq!(opx.creases, cp.creases);
 }
 
-/// The lower side of the square is open by a fifth, and a crease cuts off the corner there: what is left is a sheet that
-/// nobody has drawn.
+/// The lower side of the square is open by a fifth, and a crease cuts off the corner there: what is left is a
+/// sheet that nobody has drawn.
 #[test]
 fn an_open_outline_is_told_with_its_place() {
     let open = "1 0 0 0.4 0\n1 0.6 0 1 0\n1 1 0 1 -1\n1 1 -1 0 -1\n1 0 -1 0 0\n3 0 0 1 -1\n";
@@ -127,8 +127,8 @@ fn of_a_switch_what_needs_no_extension_is_read() {
     assert_eq!(switched.positions, plain.positions);
 }
 
-/// A line of the outline that is drawn too far encloses nothing, as does a stray one: they are left out, as creases are that
-/// lead nowhere.
+/// A line of the outline that is drawn too far encloses nothing, as does a stray one: they are left out, as
+/// creases are that lead nowhere.
 #[test]
 fn lines_of_the_outline_that_are_drawn_too_far_are_left_out() {
     let far = SQUARE.replace("1 0 0 1 0", "1 -0.3 0 1.5 0");
@@ -147,7 +147,8 @@ fn lines_of_the_outline_that_are_drawn_too_far_are_left_out() {
     assert!(said.contains("the outline is not closed: 2 ends"), "{said}");
 }
 
-/// A mountain on a valley is a crease to either side, as for `isosheet mesh`, whatever the order of the lines.
+/// A mountain on a valley is a crease to either side, as for `isosheet mesh`, whatever the order of the
+/// lines.
 #[test]
 fn creases_that_contradict_each_other_fold_freely() {
     let square = SQUARE.lines().take(4).collect::<Vec<_>>().join("\n");
@@ -171,8 +172,8 @@ fn creases_that_contradict_each_other_fold_freely() {
     );
 }
 
-/// A valley leaves a mountain a thousandth of the drawing from where both begin: their ends meet, as nothing contradicts
-/// itself then.
+/// A valley leaves a mountain a thousandth of the drawing from where both begin: their ends meet, as nothing
+/// contradicts itself then.
 #[test]
 fn ends_meet_where_creases_would_contradict_each_other_otherwise() {
     let square = SQUARE.lines().take(4).collect::<Vec<_>>().join("\n");
@@ -486,7 +487,8 @@ fn vertices_at_one_place_of_patterns_without_faces_are_one() {
     assert!(read(MeshFormat::Fold, &folded).is_err());
 }
 
-/// A grid of 400 lines each way crosses more often than what is allowed of so many lines, and that is told at once.
+/// A grid of 400 lines each way crosses more often than what is allowed of so many lines, and that is told at
+/// once.
 #[test]
 fn lines_that_meet_too_often_are_refused() {
     let grid = |count: u32| {
@@ -504,8 +506,8 @@ fn lines_that_meet_too_often_are_refused() {
     assert_eq!(mesh.faces.len(), 2 * 40 * 40);
 }
 
-/// What small files made of XML may become is bounded by the length of the file: its elements that are used, the curves of
-/// them and the styles that are compared.
+/// What small files made of XML may become is bounded by the length of the file: its elements that are used,
+/// the curves of them and the styles that are compared.
 #[test]
 fn svg_drawings_are_in_proportion_to_their_file() {
     let file = |inside: &str| {

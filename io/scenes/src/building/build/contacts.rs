@@ -18,7 +18,7 @@ use std::ops::Range;
 
 /// One of the two that meet in a pair.
 enum Meeting {
-    /// These points of sheets, bodies and obstacles in motion.
+    /// The points of sheets, bodies and obstacles in motion, between which contact acts.
     Points(Range<usize>),
     /// The obstacle of this number among those that do not deform.
     Body(u32),

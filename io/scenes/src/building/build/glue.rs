@@ -97,8 +97,8 @@ impl Builder<'_> {
         )
     }
 
-    /// The springs across a seam of these pairs, each with the opposite corner of the face on its second side. Seam
-    /// and faces beside it are springs in series ([`CreaseSpring::put_in_sheet`]).
+    /// The springs across a seam of these pairs, each with the opposite corner of the face on its second
+    /// side. Seam and faces beside it are springs in series ([`CreaseSpring::put_in_sheet`]).
     fn seam_springs(
         &self,
         bend: &SeamBend,

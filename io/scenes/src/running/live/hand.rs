@@ -50,10 +50,10 @@ impl Advice for HoldError {
 
 impl LiveScene {
     /// Holds a vertex by a spring from now on, in place of any held before. It pulls at nothing until
-    /// [`LiveScene::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the
-    /// mass `M` of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape: the
-    /// weight of the whole sheet stretches it by a hundredth of that. What it does is work. Returns where it
-    /// is, metres.
+    /// [`LiveScene::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with
+    /// the mass `M` of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape:
+    /// the weight of the whole sheet stretches it by a hundredth of that. What it does is work. Returns where
+    /// it is, metres.
     ///
     /// ```
     /// use isosheet_scenes::{LiveScene, SceneFile, StartingPoint};
