@@ -72,16 +72,7 @@ pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
-pub use isosheet_materials::{
-    At, CouplingKind, CreaseError, CreaseSpring, CreaseSprings, Curl, CurlError, Curvature,
-    CurvedFace, DirectionError, Directions, ElasticSheet, ElasticSheetError, FLAT, FaceCurvature,
-    Force, Glue, GlueError, Gravity, HessianSink, Isotropic, LimitError, Limited, LineClamp,
-    Material, MaterialDirection, MaterialReport, MembraneLaw, Memories, NamedMaterial,
-    NaturalTensor, NoFace, OptionsError, Orthotropic, OrthotropicMembrane, OrthotropicPlate,
-    PAPER_GRAVITY, Patched, PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
-    Potential, PotentialShape, Reached, Remembering, RestAngle, Settled, Stiffening, StrainOfFace,
-    UnknownMaterial, Yield, potential,
-};
+pub use isosheet_materials::*;
 pub use isosheet_model::{
     AccelerationField, Air, AirError, Attachment, BadPotential, BodyForce, BodyTorque,
     ClampAcrossMesh, Continuation, Cut, Driver, EdgeMoment, ElasticDeformation, EnclosedGas, Gas,
@@ -91,10 +82,7 @@ pub use isosheet_model::{
     SheetOfMaterialError, Solid, SolidError, State, StepError, Support, TraceEvent, TurningLoad,
     VertexConstraint, VertexLoad, Wind, constraint, immobile_vertices, term,
 };
-pub use isosheet_motion::{
-    AxisRotation, Interpolation, Keyframe, Kinematics, Led, MotionError, PointMotion, PointProfile,
-    Profile, ProfileError, RigidDisplacement, RigidMotion, RigidProfile,
-};
+pub use isosheet_motion::*;
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;
 pub use report::simulation_error::SimulationError;
