@@ -268,7 +268,7 @@ impl StepStart<'_> {
     /// Work of an implicit force at the free vertices in a step that ends at positions `x` with the force
     /// `end` (`3V`, newtons): of implicit Euler with the force at the end, which balances the energy but for
     /// what the method dissipates; of a two-step formula by the trapezoidal rule with the force at the start,
-    /// at the order of the formula.
+    /// at the order of the formula. `end` is overwritten.
     pub fn implicit_work(
         &self,
         force: &impl Force,

@@ -92,6 +92,12 @@ fn errors(
         .max(f64::MIN_POSITIVE);
     let own = gradient(x);
     let largest = norm(&own);
+    if !largest.is_finite() || !energy(x).is_finite() {
+        return DerivativeErrors {
+            gradient: f64::INFINITY,
+            hessian: f64::INFINITY,
+        };
+    }
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut directions: Vec<Vec<f64>> = (0..2)
         .map(|_| x.iter().map(|_| random.random_range(-1.0..1.0)).collect())
@@ -109,6 +115,9 @@ fn errors(
         let second = product(direction);
         let mut slopes = Vec::new();
         let mut best_second = f64::INFINITY;
+        if !norm(&second).is_finite() {
+            errors.hessian = f64::INFINITY;
+        }
         for part in DISPLACEMENTS {
             let h = part * size / along;
             let moved = |sign: f64| -> Vec<f64> {
@@ -129,13 +138,12 @@ fn errors(
             let off: Vec<f64> = change.iter().zip(&second).map(|(a, b)| a - b).collect();
             best_second = best_second.min(norm(&off) / norm(&change).max(norm(&second)));
         }
-        if let Some((found, uncertainty)) = settled(&slopes)
-            && largest > 0.0
-        {
+        if let Some((found, uncertainty)) = settled(&slopes) {
             let off = (found - slope).abs();
             // What the differences do not resolve says nothing.
             if off > 10.0 * uncertainty {
-                errors.gradient = errors.gradient.max(off / (largest * along));
+                let size = (largest * along).max(found.abs());
+                errors.gradient = errors.gradient.max(off / size);
             }
         }
         if best_second.is_finite() {

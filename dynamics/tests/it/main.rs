@@ -3,6 +3,7 @@
 mod air;
 mod creases;
 mod damping;
+mod dashpots;
 mod elastic_sheet;
 mod glue;
 mod hands;
@@ -14,3 +15,4 @@ mod plate_yield;
 mod rigid_bodies;
 mod swelling;
 mod taut_sheets;
+mod wrong_potentials;

@@ -59,7 +59,7 @@ impl Advice for BadPotential {
                 "check the potential at the positions where the step begins"
             }
             PotentialFault::Block { .. } => {
-                "name all pairs without a common edge in `Potential::couplings`, or leave the block out, which costs iterations"
+                "take vertices and edges of the sheet, and name all pairs without a common edge in `Potential::couplings`, or leave the block out, which costs iterations"
             }
             PotentialFault::Gradient { .. } => {
                 "compare the derivatives of the potential with differences by `check_derivatives`"

@@ -153,7 +153,6 @@ impl Body {
         lasting
     }
 
-    /// Its name as the body of a number.
     /// What it is called in messages and results: its name, or `body[0]` by its number in the scene.
     pub fn called(&self, number: usize) -> String {
         let numbered = || Key::root().name("body").entry(number).to_string();
