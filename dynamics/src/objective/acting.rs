@@ -116,11 +116,12 @@ impl Acting {
     /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from
     /// that of the forces there, at the vertices for which they are too stiff to be expected.
     ///
-    /// A force `-c v` on a mass `m` whose velocity is extrapolated over a step of the span `s` from one before
-    /// it, `w` times shorter, is stable to `c s / m = 2 (1 + w) / (1 + 2 w)`, 4/3 for equal steps: there the
-    /// root of the recursion is -1. With the effective step `h = s (1 + w) / (1 + 2 w)`, the motion `z` at the
-    /// end and the expected one `y` this is `|h^2 (f(z) - f(y)) / m| = 2 (h / s)^2 |z - y|`. Of implicit Euler,
-    /// where it would be twice `|z - y|`, the bound is `|z - y|`, from which on velocities change their sign.
+    /// A force `-c v` on a mass `m` whose velocity is extrapolated over a step of the span `s` from one
+    /// before it, `w` times shorter, is stable to `c s / m = 2 (1 + w) / (1 + 2 w)`, 4/3 for equal steps:
+    /// there the root of the recursion is -1. With the effective step `h = s (1 + w) / (1 + 2 w)`, the motion
+    /// `z` at the end and the expected one `y` this is `|h^2 (f(z) - f(y)) / m| = 2 (h / s)^2 |z - y|`. Of
+    /// implicit Euler, where it would be twice `|z - y|`, the bound is `|z - y|`, from which on velocities
+    /// change their sign.
     fn misjudged(&mut self, step: &StepStart<'_>, x: &[f64]) -> f64 {
         let h = step.h;
         let limit = (2.0 * (h / step.span).powi(2)).min(1.0);

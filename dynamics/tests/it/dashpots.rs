@@ -13,9 +13,9 @@ impl Force for Dashpots {
     }
 }
 
-/// A sheet of 3.5 g in all hangs by a corner. Its corners have a ninth of the mass of a vertex inside, so that
-/// dashpots are too stiff for them long before they are for the sheet. It is never faster than one that falls
-/// freely, and dashpots take energy.
+/// A sheet of 3.5 g in all hangs by a corner. Its corners have a ninth of the mass of a vertex inside, so
+/// that dashpots are too stiff for them long before they are for the sheet. It is never faster than one that
+/// falls freely, and dashpots take energy.
 #[test]
 fn dashpots_never_drive_a_sheet() {
     let sheet = generate::isotropic_square(1, 0.2).expect("a square");
