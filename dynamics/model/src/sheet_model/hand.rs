@@ -59,7 +59,7 @@ impl Advice for HandError {
 }
 
 /// A spring between a vertex and a point in space that is led from outside, `V(t, x) = k |x_v - p(t)|^2 / 2`:
-/// a hand that holds a vertex. Between two steps it is led elsewhere ([`Simulation::lead_hand`]), and its
+/// a hand that holds a vertex. Between two steps it is led elsewhere (`Simulation::lead_hand`), and its
 /// work enters the energy balance. Where it is and where it goes is what it remembers: a part of the state of
 /// a simulation and of its checkpoints.
 #[derive(Debug, Clone)]
