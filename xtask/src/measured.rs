@@ -69,7 +69,7 @@ fn check(book: &Path) -> Result<()> {
             let files = changed(&root(), report, old.commit());
             let what = match &files {
                 Ok(files) if files.is_empty() => continue,
-                Ok(files) => files.join(", "),
+                Ok(files) => first_of(files),
                 Err(error) => error.to_string(),
             };
             let parts: Vec<&str> = old.parts.iter().map(|part| part.name.as_str()).collect();
@@ -89,6 +89,16 @@ fn check(book: &Path) -> Result<()> {
          `cargo xtask measured`"
     );
     Ok(())
+}
+
+/// The first files that have changed, and how many others have.
+fn first_of(files: &[String]) -> String {
+    let (shown, others) = files.split_at(files.len().min(3));
+    let more = match others.len() {
+        0 => String::new(),
+        count => format!(" and {count} others"),
+    };
+    format!("{}{more}", shown.join(", "))
 }
 
 /// The README and the pages of the book that are written by hand.
