@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_coords::linalg::{Ordering, Pattern, SparseLlt, elimination_order};
 use isosheet_coords::{
     BentState, CartesianChart, Chart, Choice, FrontMap, Linearised, RealiseOptions, RodSystem,
-    SaddlePoint, Start, bent_square, sys_coord_assnmt_single,
+    SaddlePoint, StartVertex, bent_square, sys_coord_assnmt_single,
 };
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
 use std::hint::black_box;
@@ -28,7 +28,7 @@ fn placement(c: &mut Criterion) {
         // Bent to a cylinder: away from the flat state, where placements are at the edge of their range.
         let bent = bent_square(&sheet, level, BentState::Cylinder);
         let bent_sheet = Sheet::new(bent.clone(), &sheet.face_indices()).expect("valid");
-        let assign = || sys_coord_assnmt_single(&bent_sheet, Start::Pinned(VertexId(0)));
+        let assign = || sys_coord_assnmt_single(&bent_sheet, StartVertex::Pinned(VertexId(0)));
         group.bench_function(BenchmarkId::new("assignment", size), |b| {
             b.iter(|| assign().expect("assigned"));
         });

@@ -31,7 +31,7 @@ use propagation::Propagation;
 
 /// Where the propagation of `sys_coord_assnmt_single` starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum StartVertex {
     /// The external point constraint of the paper: the vertex is pinned, its three coordinates are removed.
     Pinned(VertexId),
     /// A free vertex with its three Cartesian coordinates.
@@ -45,13 +45,16 @@ pub enum Start {
 ///
 /// # Errors
 /// [`AssignmentError::NoSuchVertex`].
-pub fn sys_coord_assnmt_single(sheet: &Sheet, start: Start) -> Result<Assignment, AssignmentError> {
+pub fn sys_coord_assnmt_single(
+    sheet: &Sheet,
+    start: StartVertex,
+) -> Result<Assignment, AssignmentError> {
     let options = match start {
-        Start::Pinned(v) => AssignmentOptions {
+        StartVertex::Pinned(v) => AssignmentOptions {
             pins: vec![v],
             ..Default::default()
         },
-        Start::Free(v) => AssignmentOptions {
+        StartVertex::Free(v) => AssignmentOptions {
             starts: vec![v],
             ..Default::default()
         },

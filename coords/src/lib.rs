@@ -19,14 +19,14 @@
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`], a crate of its own.
 //!
 //! ```
-//! use isosheet_coords::{BentState, CartesianChart, Chart, Choice, Linearised, RodSystem, Start};
+//! use isosheet_coords::{BentState, CartesianChart, Chart, Choice, Linearised, RodSystem, StartVertex};
 //! use isosheet_coords::{bent_square, sys_coord_assnmt_single};
 //! use isosheet_mesh::{VertexId, generate};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let sheet = generate::isotropic_square(2, 1.0)?;
 //! // The paper's assignment from a pinned corner: one coordinate per boundary edge is left.
-//! let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0)))?;
+//! let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(0)))?;
 //! assert_eq!(assignment.dof(), 32);
 //!
 //! // A well-conditioned chart at a bent state, and the velocities that belong to rates of its coordinates.
@@ -62,7 +62,9 @@ mod system;
 mod testing;
 mod vec3;
 
-pub use assignment::{Assignment, AssignmentOptions, Rule, Start, assign, sys_coord_assnmt_single};
+pub use assignment::{
+    Assignment, AssignmentOptions, Rule, StartVertex, assign, sys_coord_assnmt_single,
+};
 pub use cartesian_chart::{CartesianChart, Choice};
 pub use chart::{Chart, ChartError};
 pub use condition::{

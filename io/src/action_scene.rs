@@ -4,7 +4,7 @@ use super::face_moments::FaceMoments;
 use isosheet_dynamics::Material;
 use isosheet_files::FileError;
 use isosheet_scenes::{
-    DrawingFile, MeshFile, PolygonFaces, Pose, Turn, UpAxis, bounds, path_value, two_digits,
+    DrawingFile, MeshFileKey, PolygonFaces, Pose, Turn, UpAxis, bounds, path_value, two_digits,
 };
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_4;
@@ -29,7 +29,7 @@ pub(crate) enum DrapedBody {
     /// The triangles of a file: a solid if they are closed, otherwise a surface with two sides.
     Tool {
         /// The file as the scene names it.
-        file: MeshFile,
+        file: MeshFileKey,
         /// The centre of the area of the file as the scene places it, metres.
         centre: [f64; 3],
         /// The heights of its lowest and its highest point, metres.
@@ -59,7 +59,7 @@ pub(crate) enum HeldCorners {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SheetSource {
     /// A mesh file.
-    File(MeshFile),
+    File(MeshFileKey),
     /// A drawing.
     Drawing(DrawingFile),
 }
@@ -358,7 +358,7 @@ fn draped(body: &DrapedBody, below: Below, half: [f64; 2]) -> Result<String, Fil
 }
 
 /// A mesh file as the text of a scene has it.
-fn file_value(file: &MeshFile) -> Result<String, FileError> {
+fn file_value(file: &MeshFileKey) -> Result<String, FileError> {
     let mut text = format!(
         "{{ path = {}, scale = {:?}",
         path_value(&file.path)?,
@@ -389,7 +389,7 @@ mod tests {
         let positions = corners.map(|[x, y]| [2_600_000.25 + x, y, 3.0]).to_vec();
         let moments = FaceMoments::of(&positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
         ActionScene {
-            source: SheetSource::File(MeshFile::new("strip.obj")),
+            source: SheetSource::File(MeshFileKey::new("strip.obj")),
             positions,
             faces: 2,
             moments,

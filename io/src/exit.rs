@@ -3,7 +3,7 @@
 use super::failure::{Failure, Format, Message};
 use super::message::{print_coloured, print_message};
 use super::progress::event;
-use isosheet_scenes::Colours;
+use isosheet_scenes::MessageStyle;
 use serde_json::json;
 use std::io::IsTerminal;
 
@@ -27,10 +27,10 @@ pub(crate) fn report(failure: &Failure) -> u8 {
             match &failure.message {
                 Message::Text(text) => print_message(format_args!("error: {text}")),
                 Message::Scene(error) if std::io::stderr().is_terminal() => {
-                    print_coloured(&error.render(Colours::Terminal));
+                    print_coloured(&error.render(MessageStyle::Terminal));
                 }
                 Message::Scene(error) => {
-                    print_message(format_args!("{}", error.render(Colours::Plain)));
+                    print_message(format_args!("{}", error.render(MessageStyle::Plain)));
                 }
             }
             if let Some(remedy) = &failure.remedy {

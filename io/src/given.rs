@@ -9,7 +9,7 @@ use isosheet_drawings::{DrawingFormat, DrawingOptions};
 use isosheet_formats::{DrawnSheet, MeshFormat, MeshOptions, Polygons, read_mesh_with};
 use isosheet_mesh::Topology;
 use isosheet_mesh::wording::{brief, counted};
-use isosheet_scenes::{DrawingFile, MeshFile, PolygonFaces, UpAxis, size as extent};
+use isosheet_scenes::{DrawingFile, MeshFileKey, PolygonFaces, UpAxis, size as extent};
 use std::path::Path;
 
 /// Edges of the mesh of a drawing are about this part of its longest side.
@@ -65,12 +65,12 @@ impl Given {
     }
 
     /// The file as a scene names it, with a unit of so many metres.
-    pub(super) fn file(&self, path: &Path, scale: f64) -> MeshFile {
-        MeshFile {
+    pub(super) fn file(&self, path: &Path, scale: f64) -> MeshFileKey {
+        MeshFileKey {
             scale,
             up: self.up,
             polygons: PolygonFaces::Triangulate,
-            ..MeshFile::new(path)
+            ..MeshFileKey::new(path)
         }
     }
 }

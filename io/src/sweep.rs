@@ -5,7 +5,7 @@ use super::message::{counted, print_progress};
 use super::workers;
 use super::write::to_stdout;
 use clap::{Args, ValueEnum};
-use isosheet_runs::{Engine, Sweep, Variation};
+use isosheet_runs::{Sweep, SweepRunner, Variation};
 use std::ffi::OsStr;
 use std::num::{NonZero, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -64,11 +64,11 @@ enum EngineName {
 }
 
 impl EngineName {
-    fn engine(self) -> Engine {
+    fn engine(self) -> SweepRunner {
         match self {
-            Self::Parallel => Engine::Parallel,
-            Self::Slurm => Engine::Slurm,
-            Self::Snakemake => Engine::Snakemake,
+            Self::Parallel => SweepRunner::Parallel,
+            Self::Slurm => SweepRunner::Slurm,
+            Self::Snakemake => SweepRunner::Snakemake,
         }
     }
 }

@@ -57,14 +57,14 @@ fn union_jack_squares_need_no_closures() {
         let boundary = sheet.topology().boundary_edge_count();
         let vertices = sheet.topology().vertex_count();
         for v in starts(level) {
-            let a = sys_coord_assnmt_single(&sheet, Start::Pinned(v)).unwrap();
+            let a = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(v)).unwrap();
             assert_eq!(a.rule_count('p'), 1);
             assert_eq!(a.rule_count('h'), 1, "M^{level} from {v}");
             assert_eq!(a.rule_count('g'), boundary - 2, "M^{level} from {v}");
             assert_eq!(a.rule_count('f'), vertices - boundary, "M^{level} from {v}");
             assert!(a.closures().is_empty());
             assert_eq!(a.dof(), boundary);
-            let free = sys_coord_assnmt_single(&sheet, Start::Free(v)).unwrap();
+            let free = sys_coord_assnmt_single(&sheet, StartVertex::Free(v)).unwrap();
             assert_eq!(free.coordinate_count(), boundary + 3);
             // Lemma 2: 11, 19, 35, 67, 131.
             assert_eq!(free.dof(), (8 << level) + 3);
@@ -77,7 +77,7 @@ fn same_order_as_the_published_algorithm() {
     for level in 0..=2 {
         let sheet = isotropic_square(level, 1.0);
         for v in 0..sheet.topology().vertex_count() as u32 {
-            let a = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(v))).unwrap();
+            let a = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(v))).unwrap();
             let b = literal(&sheet, VertexId(v));
             for (p, (w, front, known)) in a.order().iter().zip(b) {
                 assert_eq!((p.vertex, p.front), (w, front));
@@ -90,7 +90,7 @@ fn same_order_as_the_published_algorithm() {
 #[test]
 fn rules_use_vertices_placed_before() {
     let sheet = isotropic_square(3, 1.0);
-    let a = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(5))).unwrap();
+    let a = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(5))).unwrap();
     let mut known = vec![false; sheet.topology().vertex_count()];
     for p in a.order() {
         assert!(p.rule.known().iter().all(|w| known[w.index()]));
@@ -132,7 +132,7 @@ fn closed_band_has_closures() {
         faces.push([i, n + j, j]);
     }
     let sheet = Sheet::new(x, &faces).unwrap();
-    let a = sys_coord_assnmt_single(&sheet, Start::Free(VertexId(0))).unwrap();
+    let a = sys_coord_assnmt_single(&sheet, StartVertex::Free(VertexId(0))).unwrap();
     assert!(!a.closures().is_empty());
     assert_eq!(a.dof(), 2 * n as usize);
 }
@@ -247,8 +247,8 @@ proptest! {
         let mut faces: Vec<[u32; 3]> = one.topology().faces().iter().map(|f| f.map(|v| v.0)).collect();
         faces.extend(faces.clone().iter().map(|f| f.map(|v| v + n)));
         let sheet = Sheet::new(x, &faces).unwrap();
-        let a = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(1))).unwrap();
-        let single = sys_coord_assnmt_single(&one, Start::Free(VertexId(0))).unwrap();
+        let a = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(1))).unwrap();
+        let single = sys_coord_assnmt_single(&one, StartVertex::Free(VertexId(0))).unwrap();
         prop_assert_eq!(a.dof(), 2 * single.dof() - 3);
         prop_assert_eq!(a.rule_count('s'), 1);
     }

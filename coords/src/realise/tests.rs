@@ -1,7 +1,9 @@
 //! Round trips, Theorem 1 and refusals.
 
 use super::*;
-use crate::assignment::{AssignmentOptions, Degenerate, Start, assign, sys_coord_assnmt_single};
+use crate::assignment::{
+    AssignmentOptions, Degenerate, StartVertex, assign, sys_coord_assnmt_single,
+};
 use crate::system::RodSystem;
 use crate::testing::{bent, irregular_grid, isotropic_square};
 use proptest::prelude::*;
@@ -55,7 +57,7 @@ proptest! {
         let sheet = isotropic_square(level, 1.0);
         let v = VertexId(start % sheet.topology().vertex_count() as u32);
         let Some(x) = bent(&sheet, &[v], 0.1, seed) else { return Ok(()) };
-        let start = if free { Start::Free(v) } else { Start::Pinned(v) };
+        let start = if free { StartVertex::Free(v) } else { StartVertex::Pinned(v) };
         let assignment = sys_coord_assnmt_single(&sheet, start).unwrap();
         prop_assume!(assignment.closures().is_empty());
         let map = FrontMap::new(&sheet, assignment, &x, RealiseOptions::default()).unwrap();
@@ -79,7 +81,7 @@ proptest! {
     fn meshes_with_closures(size in 2..4u32, seed in 0..200u64) {
         let sheet = irregular_grid(size, seed);
         let Some(x) = bent(&sheet, &[VertexId(0)], 0.1, seed) else { return Ok(()) };
-        let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
+        let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(0))).unwrap();
         let closures = assignment.closures().len();
         let options = RealiseOptions { closure_tolerance: 1e-5, ..Default::default() };
         let Ok(map) = FrontMap::new(&sheet, assignment, &x, options) else { return Ok(()) };
@@ -114,7 +116,7 @@ fn eq_10_is_not_sufficient_where_a_vertex_has_four_known_neighbours() {
         let Some(x) = bent(&sheet, &[VertexId(0)], 0.1, seed) else {
             continue;
         };
-        let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
+        let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(0))).unwrap();
         let is_closed = assignment.closures().is_empty();
         let map = FrontMap::new(&sheet, assignment, &x, RealiseOptions::default()).unwrap();
         let mut q = vec![0.0; map.coordinate_count()];
@@ -139,7 +141,8 @@ fn flat_states_are_realised_by_continuity() {
     for level in 0..=2 {
         let sheet = isotropic_square(level, 1.0);
         for v in 0..sheet.topology().vertex_count() as u32 {
-            let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(v))).unwrap();
+            let assignment =
+                sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(v))).unwrap();
             let x = sheet.positions();
             let map = FrontMap::new(&sheet, assignment, x, RealiseOptions::default()).unwrap();
             let mut q = vec![0.0; map.coordinate_count()];
@@ -227,7 +230,7 @@ fn eq_10_is_refused_with_edge_and_angles() {
 #[test]
 fn malformed_input() {
     let sheet = isotropic_square(0, 1.0);
-    let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
+    let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(0))).unwrap();
     let x = sheet.positions();
     let map = FrontMap::new(&sheet, assignment, x, RealiseOptions::default()).unwrap();
     let mut y = vec![0.0; x.len()];
@@ -248,7 +251,7 @@ fn malformed_input() {
 #[test]
 fn tolerances_are_between_round_off_and_what_a_rod_bears() {
     let sheet = isotropic_square(0, 1.0);
-    let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
+    let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Pinned(VertexId(0))).unwrap();
     let ask = |options: RealiseOptions| {
         let found = FrontMap::new(&sheet, assignment.clone(), sheet.positions(), options);
         assert_eq!(found.is_ok(), options.validate().is_ok());

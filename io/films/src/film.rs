@@ -6,8 +6,8 @@ use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Part, VertexId};
 use isosheet_pictures::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
-    strip,
+    Camera, DrawnSolid, Image, Look, PictureError, SheetPicture, animated_png, at_once,
+    render_folded, strip,
 };
 use isosheet_runs::Recording;
 use isosheet_scenes::bounds;
@@ -118,7 +118,7 @@ fn is_void(width: f64) -> bool {
 pub struct Film<'a> {
     recording: &'a Recording,
     frames: Vec<usize>,
-    solids: Vec<Solid>,
+    solids: Vec<DrawnSolid>,
     /// Of several sheets where each is in the union.
     parts: Vec<Part>,
     camera: Camera,
@@ -163,8 +163,11 @@ impl<'a> Film<'a> {
             .collect();
         let states = states.filter(|states| !states.is_empty());
         let states = states.ok_or_else(PictureError::no_frames)?;
-        let bodies = recording.obstacles.iter().map(|body| Solid::of(body, 0.0));
-        let solids: Vec<Solid> = bodies.collect::<Result<_, _>>()?;
+        let bodies = recording
+            .obstacles
+            .iter()
+            .map(|body| DrawnSolid::of(body, 0.0));
+        let solids: Vec<DrawnSolid> = bodies.collect::<Result<_, _>>()?;
         let mut points: Vec<[f64; 3]> = states
             .iter()
             .flat_map(|x| x.as_chunks::<3>().0.iter().copied())
@@ -347,10 +350,10 @@ impl<'a> Film<'a> {
 
 /// The bodies in their places at time `t`, seconds.
 fn placed<'a>(
-    solids: &'a [Solid],
+    solids: &'a [DrawnSolid],
     recording: &'a Recording,
     t: f64,
-) -> impl Iterator<Item = Solid> + 'a {
+) -> impl Iterator<Item = DrawnSolid> + 'a {
     let bodies = solids.iter().zip(&recording.obstacles);
     bodies.map(move |(solid, body)| solid.moved_to(body.motion().pose(t)))
 }

@@ -1,7 +1,7 @@
 //! Quantities as colours of pictures.
 
 use isosheet_files::DataError;
-use isosheet_formats::Motion;
+use isosheet_formats::MotionFrames;
 use isosheet_page::{Centering, Field, Scale};
 use isosheet_pictures::{ColourMap, ColourScale, Colours, PictureError, Spacing};
 use isosheet_runs::Recording;

@@ -27,6 +27,6 @@ pub use mesh_file::{
 };
 pub use motion_file::{motion_archive, says_up, sources};
 pub use trajectory::{
-    Clock, FrameData, FrameQuantity, MeshCounts, Motion, MotionError, MotionFrame, MovingMesh,
-    Trajectory,
+    Clock, FrameData, FrameQuantity, MeshCounts, MotionFrame, MotionFrames, MovingMesh, Trajectory,
+    WriteMotionError,
 };

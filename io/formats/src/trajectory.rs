@@ -9,7 +9,7 @@ mod rate;
 
 pub use data::FrameData;
 pub use data::{FrameQuantity, MeshCounts};
-pub use motion::{Motion, MotionError, MotionFrame};
+pub use motion::{MotionFrame, MotionFrames, WriteMotionError};
 pub use moving_mesh::{Clock, MovingMesh};
 
 use archive::{ArchiveReader, ArchiveWriter, Packing, is_read, wrong_array};
@@ -62,7 +62,7 @@ struct MotionContents {
     quantities: Vec<FrameQuantity>,
 }
 
-impl Motion for Trajectory {
+impl MotionFrames for Trajectory {
     type Error = Infallible;
 
     fn each(
@@ -394,11 +394,11 @@ impl Trajectory {
     }
 
     /// Writes the mesh of this trajectory with the frames of a motion, of which one is in memory at a time.
-    pub fn write_motion<M: Motion>(
+    pub fn write_motion<M: MotionFrames>(
         &self,
         path: &Path,
         motion: &M,
-    ) -> Result<(), MotionError<M::Error>> {
+    ) -> Result<(), WriteMotionError<M::Error>> {
         let MotionContents { times, quantities } = self.contents(motion)?;
         let (frames, vertices) = (times.len() as u64, self.vertex_count as u64);
         let mut failed = None;
@@ -451,13 +451,16 @@ impl Trajectory {
             written = write(Packing::Plain);
         }
         match failed {
-            Some(error) => Err(MotionError::Frame(error)),
+            Some(error) => Err(WriteMotionError::Frame(error)),
             None => Ok(written.map(drop)?),
         }
     }
 
     /// What a motion has, if its frames are those of a trajectory.
-    fn contents<M: Motion>(&self, motion: &M) -> Result<MotionContents, MotionError<M::Error>> {
+    fn contents<M: MotionFrames>(
+        &self,
+        motion: &M,
+    ) -> Result<MotionContents, WriteMotionError<M::Error>> {
         let (mut times, mut quantities) = (Vec::new(), Vec::new());
         let mut checked = Ok(());
         let shown = motion.each(&mut |frame| {
@@ -474,7 +477,7 @@ impl Trajectory {
                 ControlFlow::Break(())
             }
         });
-        shown.map_err(MotionError::Frame)?;
+        shown.map_err(WriteMotionError::Frame)?;
         checked.map_err(FileError::from)?;
         Ok(MotionContents { times, quantities })
     }

@@ -11,7 +11,7 @@ use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
 use isosheet_files::DataError;
-use isosheet_formats::Motion;
+use isosheet_formats::MotionFrames;
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
 #[derive(Serialize)]
@@ -84,7 +84,7 @@ struct SeriesData<'a> {
 impl<'a> Document<'a> {
     /// The document of the frames of a replay, which were validated; none where it is longer than `most`
     /// bytes for sure. Positions and values of fields come from `frames`, everything else from the replay.
-    pub(super) fn new<M: Motion<Error: From<DataError>>>(
+    pub(super) fn new<M: MotionFrames<Error: From<DataError>>>(
         replay: &'a Replay,
         frames: &M,
         kept: KeptFrames,
@@ -161,7 +161,7 @@ impl<'a> Document<'a> {
 }
 
 /// How positions and the values of each field become integers.
-fn scales<M: Motion<Error: From<DataError>>>(
+fn scales<M: MotionFrames<Error: From<DataError>>>(
     replay: &Replay,
     frames: &M,
     kept: KeptFrames,
@@ -184,7 +184,7 @@ fn scales<M: Motion<Error: From<DataError>>>(
 }
 
 /// Positions and the values of each field, packed; none where they are longer than `most` bytes for sure.
-fn pack<M: Motion<Error: From<DataError>>>(
+fn pack<M: MotionFrames<Error: From<DataError>>>(
     scales: &[FieldScale],
     positions: PositionScale,
     frames: &M,

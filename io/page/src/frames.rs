@@ -1,7 +1,7 @@
 //! Which frames of a motion a page shows.
 
 use isosheet_files::DataError;
-use isosheet_formats::{Motion, MotionFrame};
+use isosheet_formats::{MotionFrame, MotionFrames};
 use std::ops::ControlFlow;
 
 /// Which frames of a run are kept: every `stride`-th one and the last one.
@@ -23,7 +23,7 @@ impl KeptFrames {
     }
 
     /// Shows those of a motion, in their order, until `show` breaks.
-    pub(super) fn each<M: Motion>(
+    pub(super) fn each<M: MotionFrames>(
         self,
         motion: &M,
         show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
@@ -35,7 +35,7 @@ impl KeptFrames {
     }
 
     /// Shows those of a motion, in their order, until `show` fails.
-    pub(super) fn try_each<M: Motion<Error: From<DataError>>>(
+    pub(super) fn try_each<M: MotionFrames<Error: From<DataError>>>(
         self,
         motion: &M,
         mut show: impl FnMut(&MotionFrame<'_>) -> Result<(), DataError>,

@@ -8,7 +8,7 @@ use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
 use isosheet_files::DataError;
-use isosheet_formats::Motion;
+use isosheet_formats::MotionFrames;
 
 /// The page without title, style, licences, data and program, which belong at the markers, in this order.
 const TEMPLATE: &str = include_str!("../view/page.html");
@@ -78,7 +78,7 @@ impl Replay {
 
     /// The page of some frames, which have as many positions as the rest shape and values of all fields; what
     /// this replay has of them is not used. One frame is in memory at a time.
-    pub fn page_of<M: Motion<Error: From<DataError>>>(
+    pub fn page_of<M: MotionFrames<Error: From<DataError>>>(
         &self,
         frames: &M,
         options: &PageOptions,

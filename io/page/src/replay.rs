@@ -7,7 +7,7 @@ use super::check;
 use super::field::{Field, TimeSeries};
 use super::frames::KeptFrames;
 use isosheet_files::DataError;
-use isosheet_formats::{FrameData, Motion, MotionFrame};
+use isosheet_formats::{FrameData, MotionFrame, MotionFrames};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -102,7 +102,7 @@ impl Replay {
     }
 
     /// Checks everything, with the positions and the values of fields of some frames.
-    pub(super) fn check_frames<M: Motion<Error: From<DataError>>>(
+    pub(super) fn check_frames<M: MotionFrames<Error: From<DataError>>>(
         &self,
         frames: &M,
     ) -> Result<(), M::Error> {
@@ -160,7 +160,7 @@ fn positions_of(frame: usize, time: f64) -> String {
     format!("the positions of frame {frame} at {time} s")
 }
 
-impl Motion for Replay {
+impl MotionFrames for Replay {
     type Error = DataError;
 
     fn each(

@@ -30,6 +30,6 @@ pub use error::PictureError;
 pub use memory::at_once;
 pub use montage::{Labelled, montage};
 pub use sheet::{Look, SheetPicture, render, render_folded};
-pub use solid::Solid;
+pub use solid::DrawnSolid;
 #[cfg(feature = "labels")]
 pub use vector_drawing::svg_to_png;

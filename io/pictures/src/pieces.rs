@@ -264,7 +264,7 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::solid::Solid;
+    use super::super::solid::DrawnSolid;
     use super::*;
     use isosheet_collide::Obstacle;
     use isosheet_geometry::Shape;
@@ -280,7 +280,7 @@ mod tests {
         let body = Obstacle::fixed(shape, Isometry3::translation(0.0, 0.0, -below)).unwrap();
         let x = [0.0, 0.0, 0.1, 0.1, 0.0, 0.1, 0.0, 0.1, 0.1];
         let topology = Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
-        let solids = [Solid::of(&body, 0.0).unwrap()];
+        let solids = [DrawnSolid::of(&body, 0.0).unwrap()];
         let mut scene = Triangles::new(&topology, &x, &solids, &[0.0; 3], 0.25);
         let pieces = cutter(&camera).pieces(&mut scene);
         (pieces, scene, camera)

@@ -7,7 +7,7 @@ use super::error::PictureError;
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet};
-use super::solid::{Skin, Solid, Triangles};
+use super::solid::{DrawnSolid, Skin, Triangles};
 use isosheet_files::DataError;
 use isosheet_mesh::vec3::dot;
 use isosheet_mesh::wording::{brief, counted, given};
@@ -52,7 +52,7 @@ pub struct SheetPicture<'a> {
     /// Vertices marked with a dot of another colour.
     pub immobile: &'a [VertexId],
     /// Bodies that the sheet meets.
-    pub solids: &'a [Solid],
+    pub solids: &'a [DrawnSolid],
     /// Of several sheets where each is in the topology, in their order; empty for one.
     pub parts: &'a [Part],
     /// What the sheet is coloured by instead of its sides.
@@ -454,7 +454,7 @@ mod tests {
         use isosheet_geometry::Shape;
         let sheet = isotropic_square(0, 0.1).unwrap();
         let floor = Obstacle::at(Shape::HalfSpace, [0.0, 0.0, -0.1]).unwrap();
-        let floor = Solid::of(&floor, 0.0).unwrap();
+        let floor = DrawnSolid::of(&floor, 0.0).unwrap();
         for size in [[96, 64], [64, 96], [80, 80]] {
             let look = Look {
                 size,

@@ -20,7 +20,7 @@ const FLAT: f64 = 0.97;
 
 /// A body as it is drawn, in a pose.
 #[derive(Clone, Debug)]
-pub struct Solid {
+pub struct DrawnSolid {
     form: Arc<SolidForm>,
     pose: Isometry3<f64>,
 }
@@ -58,7 +58,7 @@ pub(super) struct Shell {
     pub(super) skin: Skin,
 }
 
-impl Solid {
+impl DrawnSolid {
     /// A body in its place at time `t`, seconds.
     ///
     /// # Errors
@@ -301,7 +301,7 @@ impl Triangles {
     pub(super) fn new(
         topology: &Topology,
         positions: &[f64],
-        solids: &[Solid],
+        solids: &[DrawnSolid],
         centre: &[f64; 3],
         reach: f64,
     ) -> Self {
@@ -364,7 +364,9 @@ mod tests {
 
     fn shell(shape: Shape) -> Shell {
         let body = Obstacle::fixed(shape, Isometry3::translation(0.0, 0.0, 5.0)).unwrap();
-        Solid::of(&body, 0.0).unwrap().shell(&[1.0, 2.0, 7.0], 3.0)
+        DrawnSolid::of(&body, 0.0)
+            .unwrap()
+            .shell(&[1.0, 2.0, 7.0], 3.0)
     }
 
     #[test]

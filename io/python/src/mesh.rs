@@ -159,7 +159,7 @@ impl Mesh {
     #[staticmethod]
     #[pyo3(signature = (path, scale = 1.0))]
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
-        let mut file = scene::MeshFile::new(path);
+        let mut file = scene::MeshFileKey::new(path);
         file.scale = scale;
         Self::of(py, &scene::Mesh::File(file))
     }

@@ -3,7 +3,7 @@
 use isosheet_dynamics::constraint;
 use isosheet_dynamics::constraint::{Polyline, Spline};
 use isosheet_page::{Body, BodyShape};
-use isosheet_scenes::{Curve, Hold, Scene, Support, Surface, frame_motion};
+use isosheet_scenes::{CurveKey, Hold, Scene, SupportKey, SurfaceKey, frame_motion};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
@@ -49,7 +49,7 @@ impl HoldingBody {
     /// The bodies that hold the sheet of a scene, which stays in the box between two corners.
     pub fn all(scene: &Scene, corners: [[f64; 3]; 2]) -> Vec<Self> {
         let space = Space::of(corners);
-        let body = |(support, entry): (usize, &Support)| {
+        let body = |(support, entry): (usize, &SupportKey)| {
             let (local, shape) = match &entry.hold {
                 Hold::Pin
                 | Hold::MovingPin(_)
@@ -118,10 +118,10 @@ impl Space {
 
 /// Points of a curve, close enough to be joined by straight lines; the first is repeated at the end of a
 /// closed curve.
-fn points(curve: &Curve, space: &Space) -> Vec<Vector3<f64>> {
+fn points(curve: &CurveKey, space: &Space) -> Vec<Vector3<f64>> {
     match curve {
-        Curve::Line { point, direction } => space.part(*point, *direction),
-        Curve::Circle {
+        CurveKey::Line { point, direction } => space.part(*point, *direction),
+        CurveKey::Circle {
             centre,
             normal,
             radius,
@@ -133,18 +133,18 @@ fn points(curve: &Curve, space: &Space) -> Vec<Vector3<f64>> {
             };
             (0..=CIRCLE_POINTS).map(on_circle).collect()
         }
-        Curve::Polyline {
+        CurveKey::Polyline {
             points,
             corner_radius,
         } => match Polyline::new(points, *corner_radius) {
             Ok(curve) => projected(&curve, points),
             Err(_) => Vec::new(),
         },
-        Curve::Spline { points } => match Spline::open(points) {
+        CurveKey::Spline { points } => match Spline::open(points) {
             Ok(curve) => projected(&curve, points),
             Err(_) => Vec::new(),
         },
-        Curve::ClosedSpline { points } => match Spline::closed(points) {
+        CurveKey::ClosedSpline { points } => match Spline::closed(points) {
             Ok(curve) => {
                 let mut points = points.clone();
                 points.extend(points.first().copied());
@@ -167,17 +167,17 @@ fn projected(curve: &dyn constraint::Curve, points: &[[f64; 3]]) -> Vec<Vector3<
 }
 
 /// A surface in its own frame, and where this is.
-fn surface(surface: &Surface, space: &Space) -> (Isometry3<f64>, BodyShape) {
+fn surface(surface: &SurfaceKey, space: &Space) -> (Isometry3<f64>, BodyShape) {
     match *surface {
-        Surface::Plane { point, normal } => {
+        SurfaceKey::Plane { point, normal } => {
             let pose = Isometry3::from_parts(Translation3::from(point), along_z(normal));
             (pose, BodyShape::HalfSpace)
         }
-        Surface::Sphere { centre, radius } => (
+        SurfaceKey::Sphere { centre, radius } => (
             Isometry3::from(Translation3::from(centre)),
             BodyShape::Sphere { radius },
         ),
-        Surface::Cylinder {
+        SurfaceKey::Cylinder {
             point,
             axis,
             radius,
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn tubes_lie_around_their_curves() {
         let around =
-            |curve: &Curve, closest: &dyn Fn(&Vector3<f64>) -> Vector3<f64>, error: f64| {
+            |curve: &CurveKey, closest: &dyn Fn(&Vector3<f64>) -> Vector3<f64>, error: f64| {
                 let points = points(curve, &SPACE);
                 assert!(points.len() >= 2);
                 for corner in corners(&tube(&points, 0.01, 8)) {
@@ -264,7 +264,7 @@ mod tests {
                 }
                 points
             };
-        let line = Curve::Line {
+        let line = CurveKey::Line {
             point: [1.0, 0.0, 0.0],
             direction: [0.0, 0.0, -3.0],
         };
@@ -272,7 +272,7 @@ mod tests {
         // As far as the sheet comes, about its middle.
         assert!((ends[0].z - 3.1).abs() < 1e-14 && (ends[1].z + 2.9).abs() < 1e-14);
 
-        let circle = Curve::Circle {
+        let circle = CurveKey::Circle {
             centre: [0.0, 1.0, 0.0],
             normal: [2.0, 0.0, 0.0],
             radius: 0.5,
@@ -289,7 +289,7 @@ mod tests {
         let open = Spline::open(&through).unwrap();
         let closest = |p: &Vector3<f64>| constraint::Curve::closest(&open, p).position;
         let found = around(
-            &Curve::Spline {
+            &CurveKey::Spline {
                 points: through.clone(),
             },
             &closest,
@@ -298,14 +298,14 @@ mod tests {
         assert!((found[0] - Vector3::zeros()).norm() < 1e-12);
         let closed = Spline::closed(&through).unwrap();
         let closest = |p: &Vector3<f64>| constraint::Curve::closest(&closed, p).position;
-        let found = around(&Curve::ClosedSpline { points: through }, &closest, 1e-4);
+        let found = around(&CurveKey::ClosedSpline { points: through }, &closest, 1e-4);
         assert!((found[0] - found[found.len() - 1]).norm() < 1e-12);
     }
 
     #[test]
     fn surfaces_are_where_they_hold_vertices() {
         let (pose, shape) = surface(
-            &Surface::Plane {
+            &SurfaceKey::Plane {
                 point: [1.0, 2.0, 3.0],
                 normal: [0.0, 0.0, -2.0],
             },
@@ -315,7 +315,7 @@ mod tests {
         assert!((pose * Vector3::z() + Vector3::z()).norm() < 1e-15);
         assert_eq!(pose.translation.vector, Vector3::new(1.0, 2.0, 3.0));
         let axis = Vector3::new(1.0, 1.0, 0.0).normalize();
-        let cylinder = Surface::Cylinder {
+        let cylinder = SurfaceKey::Cylinder {
             point: [0.0, 0.0, 1.0],
             axis: [2.0, 2.0, 0.0],
             radius: 0.7,

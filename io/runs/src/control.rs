@@ -3,7 +3,7 @@
 use super::RunError;
 use super::intervention::{Intervention, note};
 use isosheet_scenes::{
-    Course, Interpolation, Key, KeyPart, Motion, Moved, Profile, Scene, SceneFile,
+    Course, InterpolationKey, Key, KeyPart, MotionKey, Moved, ProfileKey, Scene, SceneFile,
 };
 use toml::Value;
 
@@ -21,7 +21,7 @@ pub(super) struct Control {
 struct NewMotion {
     begin: f64,
     key: Key,
-    motion: Motion,
+    motion: MotionKey,
 }
 
 /// A function of time that replaced another one.
@@ -29,7 +29,7 @@ struct NewMotion {
 struct NewCourse {
     begin: f64,
     key: Key,
-    profile: Profile,
+    profile: ProfileKey,
 }
 
 /// The gases of a scene by their names, of which each is measured.
@@ -128,8 +128,8 @@ impl Control {
             let pieces = courses
                 .iter()
                 .map(|course| (course.begin, course.profile.breaks()));
-            *function = Profile::Course(Course::Keyframes {
-                interpolation: Interpolation::Linear,
+            *function = ProfileKey::Course(Course::Keyframes {
+                interpolation: InterpolationKey::Linear,
                 keys: without_rests(all.map(|t| [t, value(t)]).collect(), |a, b| a[1] == b[1]),
                 kinks: Some(kinks(function.breaks(), pieces)),
             });
@@ -151,7 +151,7 @@ impl Control {
             let keys_of = without_rests(keys_of, |a, b| a.is_as(b));
             let pieces = new.iter().map(|new| (new.begin, new.motion.breaks()));
             let kinks = kinks(motion.breaks(), pieces);
-            *motion = Motion::through(frame, keys_of);
+            *motion = MotionKey::through(frame, keys_of);
             if let Some(poses) = &mut motion.poses {
                 poses.kinks = Some(kinks);
             }

@@ -5,7 +5,7 @@ use super::passing::Passing;
 use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
 use isosheet_mesh::wording::{counted, quoted};
 use isosheet_mesh::{EdgeId, Topology, fold_angle};
-use isosheet_scenes::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
+use isosheet_scenes::{FoldResidual, FoldTargets, FollowedFolds, IsometryKey};
 use std::fmt;
 
 /// How closely creases and panels do what they are meant to, at the end of a run that folds a pattern.
@@ -132,7 +132,7 @@ impl FoldVerdict {
             held_open,
             panels: [count, bends.iter().filter(|b| **b).count()],
             strain,
-            is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
+            is_elastic: scene.sheet[0].isometry() != IsometryKey::Rods,
             passing: passing.part_of(scene.folding.as_ref()),
             unfoldable: UnfoldableVertex::all(
                 &recording.sheet,

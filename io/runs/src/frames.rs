@@ -4,7 +4,7 @@ use super::RunError;
 use super::error::BEGIN_ANEW;
 use crc::{CRC_64_XZ, Crc};
 use isosheet_files::{FileError, input};
-use isosheet_formats::{FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame};
+use isosheet_formats::{FrameData, FrameQuantity, MeshCounts, MotionFrame, MotionFrames};
 use isosheet_mesh::wording::counted;
 use isosheet_scenes::Setup;
 use std::fs::File;
@@ -289,7 +289,7 @@ pub(crate) struct StoredFrames {
     pub(crate) least: u64,
 }
 
-impl Motion for StoredFrames {
+impl MotionFrames for StoredFrames {
     type Error = RunError;
 
     fn each(

@@ -1,7 +1,7 @@
 //! The angle at which air comes to sheets along which it flows.
 
 use isosheet_mesh::wording::brief;
-use isosheet_scenes::{AttachedFlow, Scene, UnderWay};
+use isosheet_scenes::{AttachedFlowKey, Scene, UnderWay};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -26,7 +26,7 @@ impl Incidence {
     /// The angle after a step of a scene with attached flow; none where no air comes to its sheets.
     pub(crate) fn after(scene: &Scene, under_way: &UnderWay) -> Option<Self> {
         let air = scene.air.as_ref()?;
-        let AttachedFlow { sheet, .. } = air.attached.as_ref()?;
+        let AttachedFlowKey { sheet, .. } = air.attached.as_ref()?;
         let (model, state) = (under_way.simulation.model(), under_way.simulation.state());
         let wind = air
             .wind

@@ -1,6 +1,6 @@
 //! Until when something prescribed changes.
 
-use isosheet_scenes::{Course, Function, Moved, Profile, Scene};
+use isosheet_scenes::{Course, Function, Moved, ProfileKey, Scene};
 
 /// Until when the functions of time and the poses of a scene change, seconds, or zero. Sines, which have no
 /// end, do not count.
@@ -19,8 +19,8 @@ pub(super) fn last_change(scene: &Scene) -> f64 {
 }
 
 /// When a function has come to its end, seconds; zero for one that has none.
-fn end(function: &Profile) -> f64 {
-    let Profile::Course(course) = function else {
+fn end(function: &ProfileKey) -> f64 {
+    let ProfileKey::Course(course) = function else {
         return 0.0;
     };
     match course {

@@ -102,7 +102,7 @@ pub use row::row_of_step;
 pub use rulings::RecordedRulings;
 pub use series_body::series_body;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
-pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
+pub use sweep::{RefusedRuns, Sweep, SweepError, SweepRun, SweepRunner, Variation};
 pub use time_error::TimeError;
 pub use trial::{FoldTrial, folds_to};
 pub use vibration::Vibration;
@@ -112,7 +112,7 @@ use checkpoint::{RunProgress, StepsBy};
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::StoredFrames;
 use isosheet_files::{FileError, read_json, write_json};
-use isosheet_formats::{Motion, MotionError, Row, Trajectory, frame_path, write_obj};
+use isosheet_formats::{MotionFrames, Row, Trajectory, WriteMotionError, frame_path, write_obj};
 use isosheet_page::PageOptions;
 use isosheet_scenes::{Kept, SceneFile, Setup, UnderWay};
 use page::write_page_of;
@@ -144,13 +144,13 @@ pub enum Outcome {
 ///
 /// ```
 /// use isosheet_runs::{Outcome, simulate};
-/// use isosheet_scenes::{Mesh, Scene, SceneFile, Sheet};
+/// use isosheet_scenes::{Mesh, Scene, SceneFile, SheetKey};
 /// use std::ops::ControlFlow;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let folder = tempfile::tempdir()?;
 /// # let folder = folder.path().join("fall");
-/// let mut scene = Scene::new(Sheet::new(Mesh::Disk { radius: 0.1, rings: 2 }));
+/// let mut scene = Scene::new(SheetKey::new(Mesh::Disk { radius: 0.1, rings: 2 }));
 /// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 /// let file = SceneFile::of(scene, &folder)?;
 /// let outcome = simulate(&file, &folder, &mut |_: &_| ControlFlow::Continue(()))?;
@@ -392,8 +392,8 @@ fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(
         None => trajectory.write_motion(&path, &frames),
     };
     written.map_err(|error| match error {
-        MotionError::Frame(error) => error,
-        MotionError::Trajectory(error) => error.into(),
+        WriteMotionError::Frame(error) => error,
+        WriteMotionError::Trajectory(error) => error.into(),
     })
 }
 

@@ -85,13 +85,13 @@ impl Advice for RecordedStepError {
 ///
 /// ```
 /// use isosheet_runs::{Recorder, RecorderOptions, RecordingEnd};
-/// use isosheet_scenes::{LiveScene, Mesh, Scene, SceneFile, Sheet};
+/// use isosheet_scenes::{LiveScene, Mesh, Scene, SceneFile, SheetKey};
 /// use std::ops::ControlFlow;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let folder = tempfile::tempdir()?;
 /// # let folder = folder.path().join("fall");
-/// let mut scene = Scene::new(Sheet::new(Mesh::Disk { radius: 0.1, rings: 2 }));
+/// let mut scene = Scene::new(SheetKey::new(Mesh::Disk { radius: 0.1, rings: 2 }));
 /// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 /// let mut live = LiveScene::start(SceneFile::of(scene, &folder)?)?;
 /// let mut recorder = Recorder::begin(&mut live, &folder, &RecorderOptions::default())?;

@@ -9,7 +9,7 @@ use isosheet_collide::Obstacle;
 use isosheet_dynamics::SheetModel;
 use isosheet_files::{FileError, read_json};
 use isosheet_formats::{
-    EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
+    EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, MotionFrame, MotionFrames,
     Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history, read_loads,
     read_measures,
 };
@@ -279,7 +279,7 @@ pub(crate) enum RunFrames {
     Whole(Box<Trajectory>),
 }
 
-impl Motion for RunFrames {
+impl MotionFrames for RunFrames {
     type Error = RunError;
 
     fn each(

@@ -3,7 +3,7 @@
 use super::frame_field::{FrameField, check_frame};
 use isosheet_collide::Obstacle;
 use isosheet_files::DataError;
-use isosheet_formats::{FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
+use isosheet_formats::{FrameQuantity, HistoryRow, MeasureRow, MotionFrames, Trajectory};
 use isosheet_mesh::Sheet;
 use isosheet_page::{Body, Replay, Scale, TimeSeries};
 use isosheet_scenes::{Gauge, Origins};

@@ -3,7 +3,7 @@
 use super::Recording;
 use super::frame_field::FrameField;
 use isosheet_dynamics::FaceCurvature;
-use isosheet_formats::{FrameData, FrameQuantity, Motion, MotionFrame};
+use isosheet_formats::{FrameData, FrameQuantity, MotionFrame, MotionFrames};
 use isosheet_mesh::{EdgeId, Part, Sheet, Topology, VertexId};
 use isosheet_page::{Centering, Field, Scale};
 use isosheet_scenes::Facts;
@@ -99,7 +99,7 @@ impl<'a, M> RuledFrames<'a, M> {
     }
 }
 
-impl<M: Motion> Motion for RuledFrames<'_, M> {
+impl<M: MotionFrames> MotionFrames for RuledFrames<'_, M> {
     type Error = M::Error;
 
     fn each(

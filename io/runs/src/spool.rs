@@ -3,7 +3,7 @@
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
 use isosheet_files::FileError;
-use isosheet_formats::{FrameData, Motion, MotionFrame};
+use isosheet_formats::{FrameData, MotionFrame, MotionFrames};
 use isosheet_mesh::Sheet;
 use isosheet_page::no_frames;
 use isosheet_scenes::bounds;
@@ -27,7 +27,7 @@ pub(super) struct Spool {
 
 impl Spool {
     /// Writes what a page shows of the frames of a motion to a file in a folder.
-    pub(super) fn of<M: Motion<Error = RunError>>(
+    pub(super) fn of<M: MotionFrames<Error = RunError>>(
         motion: &M,
         sheet: &Sheet,
         fields: &[FrameField<'_>],
@@ -89,7 +89,7 @@ fn write_numbers(file: &mut impl Write, numbers: &[f64]) -> io::Result<usize> {
     Ok(numbers.len())
 }
 
-impl Motion for Spool {
+impl MotionFrames for Spool {
     type Error = RunError;
 
     fn each(

@@ -19,7 +19,7 @@ mod shell;
 mod table;
 mod variation;
 
-pub use engine::Engine;
+pub use engine::SweepRunner;
 pub use error::{RefusedRuns, SweepError};
 pub use run::SweepRun;
 pub use variation::Variation;

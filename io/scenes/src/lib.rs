@@ -3,7 +3,8 @@
 //! A scene is a TOML file ([`SceneFile`]) or is put together in a program ([`Scene`]). Lengths are in metres,
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
 //!
-//! The names are those of the file, so that a scene reads in the same way in both. This one is that of
+//! The names are those of the file, so that a scene reads in the same way in both: [`SheetKey`] is what the key
+//! `sheet` has, of which a sheet (`isosheet_mesh::Sheet`) is made. This scene is that of
 //! [`StartingPoint::Drape`]:
 //!
 //! ```
@@ -11,14 +12,14 @@
 //! # use std::path::Path;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let mut cloth = Sheet::new(Mesh::Square { side: 0.5, level: 3 });
-//! cloth.material = Some(Material::named("polycarbonate film"));
+//! let mut cloth = SheetKey::new(Mesh::Square { side: 0.5, level: 3 });
+//! cloth.material = Some(MaterialKey::named("polycarbonate film"));
 //! cloth.damping = 2.0;
 //! cloth.placement = Pose::at([-0.25, -0.25, 0.0]);
-//! let table = Obstacle::new(Shape::Cylinder { radius: 0.15, height: 0.2 });
+//! let table = ObstacleKey::new(ShapeKey::Cylinder { radius: 0.15, height: 0.2 });
 //! let mut scene = Scene::new(cloth);
-//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3.into(), ..table }];
-//! scene.contact = Contact { self_contact: true, friction: 0.3.into(), ..Contact::default() };
+//! scene.obstacle = vec![ObstacleKey { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3.into(), ..table }];
+//! scene.contact = ContactSettings { self_contact: true, friction: 0.3.into(), ..ContactSettings::default() };
 //! scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 //! scene.stop.time = 1.0;
 //! # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;
@@ -182,65 +183,65 @@ mod running {
 #[cfg(test)]
 mod found_tests;
 
-pub use bodies::body::Body;
-pub use bodies::carried::{BodyLoad, CarriedBody};
-pub use bodies::friction::{Friction, FrictionCoefficients};
-pub use bodies::guides::{BodyForce, BodyTorque, Guide};
-pub use bodies::obstacles::{Obstacle, Shape, Wall};
+pub use bodies::body::BodyKey;
+pub use bodies::carried::{CarriedBody, Wrench};
+pub use bodies::friction::{FrictionCoefficients, FrictionKey};
+pub use bodies::guides::{BodyForceKey, BodyTorqueKey, Guide};
+pub use bodies::obstacles::{ObstacleKey, ShapeKey, Wall};
 pub use building::engine_problem::Origins;
 pub use building::setup::Setup;
 pub use building::support_forces::{SupportForces, SupportLoad};
-pub use holding::contact::{Contact, SheetPair};
-pub use holding::glue::{Glue, SeamBend, SeamSide};
-pub use holding::supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
+pub use holding::contact::{ContactSettings, SheetPairKey};
+pub use holding::glue::{GlueKey, SeamBend, SeamSide};
+pub use holding::supports::{CurveKey, Followed, Hold, SupportKey, SurfaceKey, SurfaceSide};
 pub use holding::switch::{Condition, Threshold, When};
-pub use loads::air::Air;
-pub use loads::attached_flow::AttachedFlow;
-pub use loads::follower_loads::{Gas, Moment, Pressure};
+pub use loads::air::AirKey;
+pub use loads::attached_flow::AttachedFlowKey;
+pub use loads::follower_loads::{GasKey, Moment, Pressure};
 pub use loads::forces::{Acceleration, Forces, Frame, Load};
 pub use measures::measure::{Gauge, Measure, Quantity};
 pub use measures::targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
 pub use meshes::direction::{Direction, TextureAxis, TextureDirection};
 pub use meshes::drawing::DrawingFile;
-pub use meshes::mesh::{Diagonals, Mesh};
-pub use meshes::mesh_file::{MeshFile, PolygonFaces};
+pub use meshes::mesh::{DiagonalsKey, Mesh};
+pub use meshes::mesh_file::{MeshFileKey, PolygonFaces};
 pub use meshes::outline::{Outline, OutlineShape};
 pub use meshes::pattern::{
-    AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+    AlikeCreases, DegreeFourKey, Hypar, Kresling, MiuraKey, SquareTwist, Waterbomb, Yoshimura,
 };
 pub use meshes::selection::Selection;
 pub use meshes::sequence::{MeshFrames, Outside, Sequence};
 pub use meshes::up_axis::UpAxis;
 pub use methods::chart::{
-    Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
-    Substep,
+    ChartEquations, ChartKey, ChartPositions, ChartScheme, ChartSolver, Coordinates,
+    NearSingularity, Substep,
 };
 pub use methods::integration::Integration;
-pub use methods::method::{Fallback, Integrator, Method, Taut};
+pub use methods::method::{FallbackKey, Integrator, MethodKey, Taut};
 pub use methods::output::Output;
 pub use methods::stop::{Rest, Stop};
 pub use running::live::{FailedStep, HoldError, LiveScene, Target};
 pub use sheets::creases::{Crease, CreaseEdges, PatternEdges};
-pub use sheets::curl::Curl;
+pub use sheets::curl::CurlKey;
 pub use sheets::fold_group::FoldGroup;
 pub use sheets::folding::FollowedFolds;
 pub use sheets::folding::off_target;
 pub use sheets::folding::{FoldResidual, FoldTargets, Folding};
-pub use sheets::material::{Material, Plate};
+pub use sheets::material::{MaterialKey, Plate};
 pub use sheets::patch::Patch;
-pub use sheets::sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
-pub use sheets::start::{Spin, Start};
+pub use sheets::sheet::{Bending, Elasticity, IsometryKey, RestShape, SheetKey};
+pub use sheets::start::{Spin, StartKey};
 pub use sheets::weight::Weight;
 pub use sheets::yields::{CreaseYield, SheetYield};
 pub use text::fold_scene::{FoldScene, Panels, Touch, path_value, two_digits};
 pub use text::schema::{as_written, documented_schema, schema};
 pub use text::source::{SceneFile, SceneFileError};
 pub use text::starting_point::StartingPoint;
-pub use time::pose::{Motion, Pose, Rotation, Turn};
+pub use time::pose::{MotionKey, Pose, Rotation, Turn};
 pub use time::poses::{FramePose, Poses, TimedPose};
-pub use time::profile::{Change, Course, Interpolation, Profile};
+pub use time::profile::{Change, Course, InterpolationKey, ProfileKey};
 pub use words::edit::{Edit, EditError};
-pub use words::error::{Colours, PlacedProblem, SceneError, SceneText};
+pub use words::error::{MessageStyle, PlacedProblem, SceneError, SceneText};
 pub use words::key::{Key, KeyError, KeyPart};
 pub(crate) use words::part::{AnyPart, Part, Place, See, SeeMut};
 pub(crate) use words::problem::Checks;
@@ -275,12 +276,12 @@ pub const VERSION: u32 = 1;
 /// A scene.
 ///
 /// ```
-/// use isosheet_scenes::{Mesh, Scene, Selection, Sheet, Support};
+/// use isosheet_scenes::{Mesh, Scene, Selection, SheetKey, SupportKey};
 /// use std::path::Path;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let mut scene = Scene::new(Sheet::new(Mesh::Square { side: 0.21, level: 1 }));
-/// scene.support.push(Support::pin(Selection::Vertices(vec![20])));
+/// let mut scene = Scene::new(SheetKey::new(Mesh::Square { side: 0.21, level: 1 }));
+/// scene.support.push(SupportKey::pin(Selection::Vertices(vec![20])));
 /// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 /// let mut simulation = scene.build(Path::new("."))?.start()?;
 /// assert!(simulation.step(scene.method.step)?.strain < 1e-12);
@@ -295,7 +296,7 @@ pub struct Scene {
     /// The sheet, or several, each with a name: `[[sheet]]`.
     #[serde(with = "several")]
     #[schemars(with = "several::OneOrSeveral")]
-    pub sheet: Vec<Sheet>,
+    pub sheet: Vec<SheetKey>,
     /// Creases with rest angles.
     #[serde(default)]
     pub crease: Vec<Crease>,
@@ -304,34 +305,34 @@ pub struct Scene {
     pub folding: Option<Folding>,
     /// Seams: vertices that are glued to each other.
     #[serde(default)]
-    pub glue: Vec<Glue>,
+    pub glue: Vec<GlueKey>,
     /// Weights that are fixed to vertices.
     #[serde(default)]
     pub weight: Vec<Weight>,
     /// What holds the sheet.
     #[serde(default)]
-    pub support: Vec<Support>,
+    pub support: Vec<SupportKey>,
     /// Bodies that the sheet meets.
     #[serde(default)]
-    pub obstacle: Vec<Obstacle>,
+    pub obstacle: Vec<ObstacleKey>,
     /// Rigid bodies that respond.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub body: Vec<Body>,
+    pub body: Vec<BodyKey>,
     /// Forces on the sheet.
     #[serde(default)]
     pub forces: Forces,
     /// The air around the sheet. Without it there is none.
     #[serde(default)]
-    pub air: Option<Air>,
+    pub air: Option<AirKey>,
     /// Contact of the sheet with itself and with obstacles.
     #[serde(default)]
-    pub contact: Contact,
+    pub contact: ContactSettings,
     /// Lengths that are read off the sheet at each step.
     #[serde(default)]
     pub measure: Vec<Measure>,
     /// How the motion is computed.
     #[serde(default)]
-    pub method: Method,
+    pub method: MethodKey,
     /// When the run ends.
     #[serde(default)]
     pub stop: Stop,
@@ -348,7 +349,7 @@ impl Scene {
     }
 
     /// A sheet alone in space, free and without gravity.
-    pub fn new(sheet: Sheet) -> Self {
+    pub fn new(sheet: SheetKey) -> Self {
         Self {
             version: VERSION,
             sheet: vec![sheet],
@@ -361,9 +362,9 @@ impl Scene {
             body: Vec::new(),
             forces: Forces::default(),
             air: None,
-            contact: Contact::default(),
+            contact: ContactSettings::default(),
             measure: Vec::new(),
-            method: Method::default(),
+            method: MethodKey::default(),
             stop: Stop::default(),
             output: Output::default(),
         }
@@ -441,7 +442,7 @@ impl Scene {
             );
         }
         let mut others = self.sheet.iter().enumerate();
-        let differs = |(_, sheet): &(usize, &Sheet)| sheet.damping != self.sheet[0].damping;
+        let differs = |(_, sheet): &(usize, &SheetKey)| sheet.damping != self.sheet[0].damping;
         if self.method.integrator == Integrator::Chart
             && let Some((number, _)) = others.find(differs)
         {
@@ -454,7 +455,7 @@ impl Scene {
             );
         }
         let mut sheets = self.sheet.iter();
-        if let Some(elastic) = sheets.find(|sheet| sheet.isometry() != Isometry::Rods) {
+        if let Some(elastic) = sheets.find(|sheet| sheet.isometry() != IsometryKey::Rods) {
             checks.report(
                 key,
                 "this integrator needs rigid rods, and the sheet has none",

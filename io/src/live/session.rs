@@ -8,7 +8,7 @@ use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, VertexId};
 use isosheet_page::TimeSeries;
 use isosheet_runs::{HoldingBody, row_of_start, row_of_step};
-use isosheet_scenes::{Key, LiveScene, Profile, SceneError, SceneFile, bounds};
+use isosheet_scenes::{Key, LiveScene, ProfileKey, SceneError, SceneFile, bounds};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -57,7 +57,7 @@ fn with_course(file: SceneFile) -> Result<SceneFile, SceneError> {
     };
     folding
         .course
-        .get_or_insert(Profile::smooth_step(1.0, folding.time));
+        .get_or_insert(ProfileKey::smooth_step(1.0, folding.time));
     let key = Key::root().name("folding.course");
     file.changed(scene, [key])
 }

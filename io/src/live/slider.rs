@@ -1,7 +1,7 @@
 //! What of a scene can be changed while it is played: its functions of time.
 
 use isosheet_page::LiveSlider;
-use isosheet_scenes::{Change, Course, Function, Key, Profile, Scene};
+use isosheet_scenes::{Change, Course, Function, Key, ProfileKey, Scene};
 
 /// By how much the wind can be stronger than the scene has it.
 const STRONGER: f64 = 2.0;
@@ -15,7 +15,7 @@ pub(super) struct Slider {
     pub(super) key: Key,
     pub(super) shown: LiveSlider,
     /// The function as it is now.
-    profile: Profile,
+    profile: ProfileKey,
 }
 
 impl Slider {
@@ -59,7 +59,7 @@ impl Slider {
     /// [`LiveScene::drive`](isosheet_scenes::LiveScene::drive) has made it.
     pub(super) fn driven(&mut self, to: f64, begin: f64, end: f64) {
         let from = self.value(begin);
-        self.profile = Profile::Course(Course::Ramp(Change {
+        self.profile = ProfileKey::Course(Course::Ramp(Change {
             from,
             to,
             begin,

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use isosheet_mesh::{Sheet, VertexId};
-use isosheet_pictures::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
+use isosheet_pictures::{Camera, DrawnSolid, Image, Labelled, Look, SheetPicture, montage, render};
 
 /// What one picture shows.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Shot<'a> {
     pub(crate) x: &'a [f64],
     /// Vertices marked with a dot.
     pub(crate) pins: &'a [VertexId],
-    pub(crate) solids: Vec<Solid>,
+    pub(crate) solids: Vec<DrawnSolid>,
     pub(crate) label: String,
 }
 
@@ -33,7 +33,7 @@ impl Viewpoint {
     fn camera(&self, shots: &[Shot<'_>], aspect: Option<f64>) -> (Camera, f64) {
         let sheets = shots.iter().flat_map(|s| s.x.as_chunks::<3>().0);
         let bodies = shots.iter().flat_map(|s| &s.solids);
-        let bodies = bodies.flat_map(Solid::outline);
+        let bodies = bodies.flat_map(DrawnSolid::outline);
         let bodies = bodies.map(|[x, y, z]| [x, y, z.max(-self.depth)]);
         let points = sheets.copied().chain(bodies);
         let camera = Camera::new([0.0; 3], self.azimuth, self.elevation, 1.0, self.distance);

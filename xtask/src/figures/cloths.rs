@@ -83,10 +83,10 @@ impl Layout {
         };
         let table = scene.obstacle.first().context("a table")?;
         let (table_outline, height) = match &table.shape {
-            scene::Shape::Box { size } => {
+            scene::ShapeKey::Box { size } => {
                 (Outline::rectangle(0.5 * size[0], 0.5 * size[1]), size[2])
             }
-            scene::Shape::Prism { outline, height } => (Outline::of(outline.corners()), *height),
+            scene::ShapeKey::Prism { outline, height } => (Outline::of(outline.corners()), *height),
             other => bail!("no outline is known of {other:?}"),
         };
         Ok(Self {

@@ -6,7 +6,7 @@ use crate::draw::{
     palette, plan, row,
 };
 use anyhow::{Result, ensure};
-use isosheet_coords::{Assignment, Rule, Start, sys_coord_assnmt_single};
+use isosheet_coords::{Assignment, Rule, StartVertex, sys_coord_assnmt_single};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
 
@@ -23,7 +23,7 @@ pub(super) fn make() -> Result<Made> {
             key(*a).total_cmp(&key(*b))
         })
         .unwrap_or(VertexId(0));
-    let assignment = sys_coord_assnmt_single(&sheet, Start::Free(start))?;
+    let assignment = sys_coord_assnmt_single(&sheet, StartVertex::Free(start))?;
     let dof = Dof::of(t).total;
     ensure!(
         assignment.dof() as i64 == dof && assignment.closures().is_empty(),

@@ -8,7 +8,7 @@ use anyhow::Result;
 use isosheet_dynamics::immobile_vertices;
 use isosheet_mesh::VertexId;
 use isosheet_page::Replay;
-use isosheet_pictures::Solid;
+use isosheet_pictures::DrawnSolid;
 use isosheet_runs::replay_of;
 
 /// How a run is shown.
@@ -42,7 +42,7 @@ fn shots<'a>(run: &'a Run, frames: &[usize], bodies: &[usize]) -> Result<Vec<Sho
     let all = run.scene.setup()?.obstacles.clone();
     let shot = |&k: &usize| {
         let t = run.trajectory.times()[k];
-        let solids = bodies.iter().map(|b| Solid::of(&all[*b], t));
+        let solids = bodies.iter().map(|b| DrawnSolid::of(&all[*b], t));
         Ok(Shot {
             sheet: &run.sheet,
             x: run.trajectory.frame(k).unwrap_or_default(),

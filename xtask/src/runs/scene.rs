@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use isosheet_mesh::Sheet;
-use isosheet_scenes::{Material, Scene, SceneFile, Setup, StartingPoint};
+use isosheet_scenes::{MaterialKey, Scene, SceneFile, Setup, StartingPoint};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::de::DeserializeOwned;
@@ -118,8 +118,8 @@ impl FigureScene {
     /// What the sheet is made of, in words.
     pub(crate) fn sheet_name(&self) -> &str {
         match &self.scene().sheet[0].material {
-            Some(Material::Named(name)) => name,
-            Some(Material::Plate(_)) => "plate",
+            Some(MaterialKey::Named(name)) => name,
+            Some(MaterialKey::Plate(_)) => "plate",
             None => "rods",
         }
     }

@@ -21,7 +21,7 @@ pub struct MotionFrame<'a> {
 }
 
 /// Frames that are shown one after the other, as often as they are asked for.
-pub trait Motion {
+pub trait MotionFrames {
     /// Why a frame cannot be shown.
     type Error;
 
@@ -34,24 +34,24 @@ pub trait Motion {
 
 /// Why the frames of a motion cannot be written.
 #[derive(Debug)]
-pub enum MotionError<E> {
+pub enum WriteMotionError<E> {
     /// One of them cannot be shown.
     Frame(E),
     /// They are no trajectory, or it cannot be written.
     Trajectory(FileError),
 }
 
-impl<E> From<FileError> for MotionError<E> {
+impl<E> From<FileError> for WriteMotionError<E> {
     fn from(error: FileError) -> Self {
         Self::Trajectory(error)
     }
 }
 
-impl From<MotionError<Infallible>> for FileError {
-    fn from(error: MotionError<Infallible>) -> Self {
+impl From<WriteMotionError<Infallible>> for FileError {
+    fn from(error: WriteMotionError<Infallible>) -> Self {
         match error {
-            MotionError::Frame(never) => match never {},
-            MotionError::Trajectory(error) => error,
+            WriteMotionError::Frame(never) => match never {},
+            WriteMotionError::Trajectory(error) => error,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::shell::shell_word;
 /// None of them has to remember which runs are done: a line of a complete run ends at once, and that of a
 /// run that was stopped continues it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Engine {
+pub enum SweepRunner {
     /// GNU parallel: a line for the shell.
     Parallel,
     /// Slurm: the script of a job array.
@@ -17,7 +17,7 @@ pub enum Engine {
     Snakemake,
 }
 
-impl Engine {
+impl SweepRunner {
     /// The text for this program, which runs the lines of the file of commands.
     pub fn text(self, sweep: &Sweep) -> String {
         match self {

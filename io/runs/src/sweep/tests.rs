@@ -70,17 +70,17 @@ fn keys_that_meet_and_too_many_runs_are_refused() {
 #[test]
 fn texts_for_other_programs() {
     let sweep = sweep(&["a=1,2", "b=1,2,3"]).unwrap();
-    let parallel = Engine::Parallel.text(&sweep);
+    let parallel = SweepRunner::Parallel.text(&sweep);
     assert_eq!(
         parallel,
         "parallel --arg-file '/data/my sweep/commands.txt'\n"
     );
-    let slurm = Engine::Slurm.text(&sweep);
+    let slurm = SweepRunner::Slurm.text(&sweep);
     assert!(slurm.starts_with("#!/bin/sh\n#SBATCH"), "{slurm}");
     assert!(slurm.contains("\n#SBATCH --array=0-5\n") && slurm.contains("\n#SBATCH --requeue\n"));
     let last = r#"eval "$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" '/data/my sweep/commands.txt')""#;
     assert_eq!(slurm.lines().last(), Some(last));
-    let snakefile = Engine::Snakemake.text(&sweep);
+    let snakefile = SweepRunner::Snakemake.text(&sweep);
     assert!(
         snakefile.contains("workdir: \"/data/my sweep\"\n"),
         "{snakefile}"

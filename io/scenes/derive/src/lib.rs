@@ -132,7 +132,7 @@ fn is_function(field: &Field) -> bool {
     let words = field.ty.to_token_stream().to_string();
     words
         .split(|c: char| !c.is_alphanumeric())
-        .any(|word| word == "Profile")
+        .any(|word| word == "ProfileKey")
 }
 
 /// What `serde` is told of an enum, a variant or a field.

@@ -1,11 +1,11 @@
 //! Rigid bodies that respond.
 
-use crate::Sheet;
-use crate::bodies::guides::{BodyForce, BodyTorque, Guide};
-use crate::bodies::obstacles::Shape;
+use crate::SheetKey;
+use crate::bodies::guides::{BodyForceKey, BodyTorqueKey, Guide};
+use crate::bodies::obstacles::ShapeKey;
 use crate::sheets::start::Spin;
 use crate::time::pose::Pose;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::{self, Part};
 use crate::words::problem::Checks;
@@ -27,13 +27,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct Body {
+pub struct BodyKey {
     /// A name, by which measures and pairs of friction find it; if left out, `body_0` and so on.
     #[serde(default)]
     pub name: Option<String>,
     /// Its form: one that encloses a volume. Of a file the triangles have to be closed, with
     /// counter-clockwise corners as seen from outside; it may have cavities.
-    pub shape: Shape,
+    pub shape: ShapeKey,
     /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out
     /// 32, and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with
     /// so many sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
@@ -60,10 +60,10 @@ pub struct Body {
     pub guide: Option<Guide>,
     /// Forces on it besides gravity, contact and the guide.
     #[serde(default)]
-    pub force: Vec<BodyForce>,
+    pub force: Vec<BodyForceKey>,
     /// Torques on it.
     #[serde(default)]
-    pub torque: Vec<BodyTorque>,
+    pub torque: Vec<BodyTorqueKey>,
 }
 
 /// Sides of circles where a body is drawn with them.
@@ -76,9 +76,9 @@ const TOUCHING: usize = 256;
 /// Least and largest number of sides of a circle.
 const SIDES: [f64; 2] = [4.0, 256.0];
 
-impl Body {
+impl BodyKey {
     /// A free body at rest, of a shape with a density (kg/m3).
-    pub fn new(shape: Shape, density: f64) -> Self {
+    pub fn new(shape: ShapeKey, density: f64) -> Self {
         Self {
             name: None,
             shape,
@@ -97,7 +97,7 @@ impl Body {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let shape = key.name("shape");
         match self.shape {
-            Shape::HalfSpace | Shape::Wall(_) => checks.report(
+            ShapeKey::HalfSpace | ShapeKey::Wall(_) => checks.report(
                 shape.clone(),
                 format!(
                     "`{}` encloses no volume, and cannot be a body",
@@ -105,7 +105,7 @@ impl Body {
                 ),
                 "choose a closed shape, or make it an `[[obstacle]]`",
             ),
-            Shape::Sequence(_) => checks.report(
+            ShapeKey::Sequence(_) => checks.report(
                 shape.clone(),
                 "a mesh in motion is no body that responds",
                 "make it an `[[obstacle]]`",
@@ -138,7 +138,7 @@ impl Body {
     /// Sides of its circles.
     pub(crate) fn sides(&self) -> usize {
         self.sides.unwrap_or(match self.shape {
-            Shape::Sphere { .. } | Shape::Capsule { .. } => DRAWN,
+            ShapeKey::Sphere { .. } | ShapeKey::Capsule { .. } => DRAWN,
             // Polyhedra have their own.
             _ => TOUCHING,
         })
@@ -147,8 +147,8 @@ impl Body {
     /// What of it does not change during a simulation: all but its functions of time.
     pub(crate) fn lasting(&self) -> Self {
         let mut lasting = self.clone();
-        for (_, function) in part::all_mut::<Profile>(&mut lasting, Key::root()) {
-            *function = Profile::default();
+        for (_, function) in part::all_mut::<ProfileKey>(&mut lasting, Key::root()) {
+            *function = ProfileKey::default();
         }
         lasting
     }
@@ -167,12 +167,12 @@ impl Body {
 }
 
 /// The number of the body of a name.
-pub(crate) fn number_of(bodies: &[Body], name: &str) -> Option<usize> {
+pub(crate) fn number_of(bodies: &[BodyKey], name: &str) -> Option<usize> {
     (0..bodies.len()).find(|&k| bodies[k].name(k) == name)
 }
 
 /// Checks the bodies beside the sheets of a scene.
-pub(crate) fn check(bodies: &[Body], all: &[Sheet], checks: &mut Checks) {
+pub(crate) fn check(bodies: &[BodyKey], all: &[SheetKey], checks: &mut Checks) {
     for (k, (key, body)) in Key::root().name("body").entries(bodies).enumerate() {
         let name = body.name(k);
         let is_other = number_of(bodies, &name) != Some(k);
@@ -188,6 +188,6 @@ pub(crate) fn check(bodies: &[Body], all: &[Sheet], checks: &mut Checks) {
 }
 
 /// The names of all bodies.
-pub(crate) fn names(bodies: &[Body]) -> impl Iterator<Item = String> + '_ {
+pub(crate) fn names(bodies: &[BodyKey]) -> impl Iterator<Item = String> + '_ {
     bodies.iter().enumerate().map(|(k, body)| body.name(k))
 }

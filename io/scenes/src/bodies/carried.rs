@@ -23,14 +23,14 @@ pub struct CarriedBody {
 
 /// What acts on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BodyLoad {
+pub struct Wrench {
     /// Force, newtons.
     pub force: [f64; 3],
     /// Torque, newton metres: of contact about its centre of mass, of a guide about the point of that.
     pub torque: [f64; 3],
 }
 
-impl BodyLoad {
+impl Wrench {
     /// The sum of forces on vertices at positions `x`, with its torque about a point.
     fn sum(
         forces: impl IntoIterator<Item = (VertexId, Vector3<f64>)>,
@@ -49,7 +49,7 @@ impl BodyLoad {
     }
 }
 
-impl BodyLoad {
+impl Wrench {
     /// The sum of the forces on some vertices, of those on all (`3V`), with its torque about a point.
     pub(crate) fn of_vertices(
         vertices: impl IntoIterator<Item = VertexId>,
@@ -106,7 +106,7 @@ impl CarriedBody {
 
     /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or
     /// about the centre of mass on a slider.
-    pub fn guide_load(&self, simulation: &Simulation) -> Option<BodyLoad> {
+    pub fn guide_load(&self, simulation: &Simulation) -> Option<Wrench> {
         let x = &simulation.state().x;
         let pivot = of_point(x, self.pivot.as_ref()?);
         let reactions = simulation.reactions().into_iter();
@@ -116,12 +116,12 @@ impl CarriedBody {
                 .contains(&vertex)
                 .then_some((vertex, reaction.force))
         });
-        Some(BodyLoad::sum(own, x, pivot))
+        Some(Wrench::sum(own, x, pivot))
     }
 
     /// What touches bodies, does to each of them at the end of the last step. (The forces on its vertices
     /// have the sum and the torque of those on its surface.)
-    pub fn contact_loads(bodies: &[Self], simulation: &Simulation) -> Vec<BodyLoad> {
+    pub fn contact_loads(bodies: &[Self], simulation: &Simulation) -> Vec<Wrench> {
         let forces = match bodies {
             [] => None,
             _ => simulation.contact_forces(),
@@ -130,7 +130,7 @@ impl CarriedBody {
         let load = |body: &Self| {
             let forces = forces.as_ref()?;
             let centre = of_point(x, &body.centre);
-            Some(BodyLoad::of_vertices(body.vertices, forces, x, centre))
+            Some(Wrench::of_vertices(body.vertices, forces, x, centre))
         };
         bodies
             .iter()

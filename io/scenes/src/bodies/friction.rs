@@ -21,7 +21,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
 #[checked]
-pub enum Friction {
+pub enum FrictionKey {
     /// The coefficient at rest and in motion.
     Same(f64),
     /// One of each.
@@ -45,13 +45,13 @@ pub struct FrictionCoefficients {
     pub kinetic: f64,
 }
 
-impl Default for Friction {
+impl Default for FrictionKey {
     fn default() -> Self {
         Self::Same(0.0)
     }
 }
 
-impl fmt::Display for Friction {
+impl fmt::Display for FrictionKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Same(coefficient) => coefficient.fmt(f),
@@ -62,13 +62,13 @@ impl fmt::Display for Friction {
     }
 }
 
-impl From<f64> for Friction {
+impl From<f64> for FrictionKey {
     fn from(coefficient: f64) -> Self {
         Self::Same(coefficient)
     }
 }
 
-impl Friction {
+impl FrictionKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let Self::Each(FrictionCoefficients { at_rest, kinetic }) = *self else {
             checks.not_negative(key.clone(), self.coefficients().rest, Unit::One);
@@ -93,7 +93,7 @@ impl Friction {
     }
 }
 
-impl<'de> Deserialize<'de> for Friction {
+impl<'de> Deserialize<'de> for FrictionKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(FrictionVisitor)
     }
@@ -102,26 +102,26 @@ impl<'de> Deserialize<'de> for Friction {
 struct FrictionVisitor;
 
 impl<'de> Visitor<'de> for FrictionVisitor {
-    type Value = Friction;
+    type Value = FrictionKey;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a coefficient, or a table of `static` and `kinetic`")
     }
 
-    fn visit_f64<E>(self, value: f64) -> Result<Friction, E> {
-        Ok(Friction::Same(value))
+    fn visit_f64<E>(self, value: f64) -> Result<FrictionKey, E> {
+        Ok(FrictionKey::Same(value))
     }
 
-    fn visit_i64<E>(self, value: i64) -> Result<Friction, E> {
-        Ok(Friction::Same(value as f64))
+    fn visit_i64<E>(self, value: i64) -> Result<FrictionKey, E> {
+        Ok(FrictionKey::Same(value as f64))
     }
 
-    fn visit_u64<E>(self, value: u64) -> Result<Friction, E> {
-        Ok(Friction::Same(value as f64))
+    fn visit_u64<E>(self, value: u64) -> Result<FrictionKey, E> {
+        Ok(FrictionKey::Same(value as f64))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Friction, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<FrictionKey, A::Error> {
         let each = FrictionCoefficients::deserialize(MapAccessDeserializer::new(map))?;
-        Ok(Friction::Each(each))
+        Ok(FrictionKey::Each(each))
     }
 }

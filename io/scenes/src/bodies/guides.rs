@@ -1,6 +1,6 @@
 //! Joints that guide bodies.
 
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -33,7 +33,7 @@ pub enum Guide {
         /// spring drives the body along it.
         #[serde(default)]
         #[unit(Degree)]
-        rest: Profile,
+        rest: ProfileKey,
         /// Damping at the hinge, N m s/rad.
         #[serde(default)]
         damping: f64,
@@ -48,7 +48,7 @@ pub enum Guide {
         /// The displacement at which the spring is at rest, metres; 0 is where the body is at the start.
         #[serde(default)]
         #[unit(Metre)]
-        rest: Profile,
+        rest: ProfileKey,
         /// Damping along it, N s/m.
         #[serde(default)]
         damping: f64,
@@ -71,12 +71,12 @@ pub enum Guide {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct BodyForce {
+pub struct BodyForceKey {
     /// Direction in space, of any length.
     pub direction: [f64; 3],
     /// Size, newtons.
     #[unit(Newton)]
-    pub size: Profile,
+    pub size: ProfileKey,
     /// The point of the body on which it acts, by its place at the start, metres; if left out, the centre of
     /// mass.
     #[serde(default)]
@@ -94,12 +94,12 @@ pub struct BodyForce {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct BodyTorque {
+pub struct BodyTorqueKey {
     /// Its axis in space, of any length; positive sizes turn counter-clockwise seen against it.
     pub axis: [f64; 3],
     /// Size, N m.
     #[unit(NewtonMetre)]
-    pub size: Profile,
+    pub size: ProfileKey,
 }
 
 impl Guide {
@@ -152,7 +152,7 @@ impl Guide {
     }
 }
 
-impl BodyForce {
+impl BodyForceKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.direction(key.name("direction"), &self.direction);
         if let Some(point) = &self.at {
@@ -161,7 +161,7 @@ impl BodyForce {
     }
 }
 
-impl BodyTorque {
+impl BodyTorqueKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.direction(key.name("axis"), &self.axis);
     }

@@ -3,10 +3,10 @@
 use crate::bodies::body;
 use crate::words::key::Key;
 use crate::words::problem::Checks;
-use crate::{Body, Obstacle, Sheet};
+use crate::{BodyKey, ObstacleKey, SheetKey};
 
 /// The number of the obstacle of a name.
-pub(crate) fn number_of(obstacles: &[Obstacle], name: &str) -> Option<usize> {
+pub(crate) fn number_of(obstacles: &[ObstacleKey], name: &str) -> Option<usize> {
     obstacles
         .iter()
         .position(|obstacle| obstacle.name.as_deref() == Some(name))
@@ -14,9 +14,9 @@ pub(crate) fn number_of(obstacles: &[Obstacle], name: &str) -> Option<usize> {
 
 /// Checks that nothing else has the name of an obstacle.
 pub(crate) fn check_names(
-    all: &[Obstacle],
-    sheets: &[Sheet],
-    bodies: &[Body],
+    all: &[ObstacleKey],
+    sheets: &[SheetKey],
+    bodies: &[BodyKey],
     checks: &mut Checks,
 ) {
     for (k, (key, obstacle)) in Key::root().name("obstacle").entries(all).enumerate() {

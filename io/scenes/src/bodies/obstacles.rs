@@ -1,10 +1,10 @@
 //! Bodies that the sheet meets.
 
-use crate::bodies::friction::Friction;
-use crate::meshes::mesh_file::{Files, MeshFile};
+use crate::bodies::friction::FrictionKey;
+use crate::meshes::mesh_file::{Files, MeshFileKey};
 use crate::meshes::outline::Outline;
 use crate::meshes::sequence::Sequence;
-use crate::time::pose::{Motion, Pose};
+use crate::time::pose::{MotionKey, Pose};
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
@@ -27,21 +27,21 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct Obstacle {
+pub struct ObstacleKey {
     /// Its name, by which `contact.pair` names it. If left out, it has none.
     #[serde(default)]
     pub name: Option<String>,
     /// Its form.
-    pub shape: Shape,
+    pub shape: ShapeKey,
     /// Where it is while displacements and angle of its motion are zero.
     #[serde(default)]
     pub pose: Pose,
     /// How it moves.
     #[serde(default)]
-    pub motion: Motion,
+    pub motion: MotionKey,
     /// Friction with the sheet.
     #[serde(default)]
-    pub friction: Friction,
+    pub friction: FrictionKey,
 }
 
 /// The form of a body in its own frame.
@@ -53,7 +53,7 @@ pub struct Obstacle {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Shape {
+pub enum ShapeKey {
     /// Everything with z <= 0: a floor.
     HalfSpace,
     /// A box about the origin with edges along the axes.
@@ -108,7 +108,7 @@ pub enum Shape {
         faces: Vec<[u32; 3]>,
     },
     /// The triangles of a mesh file: a solid if they are closed, otherwise a surface with two sides.
-    File(MeshFile),
+    File(MeshFileKey),
     /// A mesh in motion, which may deform: a surface with two sides. It is an obstacle alone, has no `motion`
     /// besides its own, and passes through other obstacles.
     Sequence(Sequence),
@@ -147,15 +147,15 @@ impl Wall {
     }
 }
 
-impl Obstacle {
+impl ObstacleKey {
     /// A body at rest without friction.
-    pub fn new(shape: Shape) -> Self {
+    pub fn new(shape: ShapeKey) -> Self {
         Self {
             name: None,
             shape,
             pose: Pose::default(),
-            motion: Motion::default(),
-            friction: Friction::default(),
+            motion: MotionKey::default(),
+            friction: FrictionKey::default(),
         }
     }
 
@@ -167,7 +167,7 @@ impl Obstacle {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.shape.check(&key.name("shape"), checks);
-        if matches!(self.shape, Shape::Sequence(_)) && self.motion != Motion::default() {
+        if matches!(self.shape, ShapeKey::Sequence(_)) && self.motion != MotionKey::default() {
             let message = "the obstacle is a mesh in motion, and moves besides";
             let remedy = "leave out `motion`, and place the mesh by `pose`";
             checks.report(key.name("motion"), message, remedy);
@@ -175,24 +175,24 @@ impl Obstacle {
     }
 }
 
-impl Shape {
+impl ShapeKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let shape = key.name(self.name());
         let mut length =
             |name: &str, value: f64| checks.positive(shape.name(name), value, Unit::Metre);
         match self {
-            Shape::HalfSpace => {}
-            Shape::Box { size } => {
+            ShapeKey::HalfSpace => {}
+            ShapeKey::Box { size } => {
                 for (k, extent) in size.iter().enumerate() {
                     checks.positive(shape.name("size").entry(k), *extent, Unit::Metre);
                 }
             }
-            Shape::Sphere { radius } => length("radius", *radius),
-            Shape::Cylinder { radius, height } => {
+            ShapeKey::Sphere { radius } => length("radius", *radius),
+            ShapeKey::Cylinder { radius, height } => {
                 length("radius", *radius);
                 length("height", *height);
             }
-            Shape::Capsule {
+            ShapeKey::Capsule {
                 radius,
                 length: distance,
             } => {
@@ -205,11 +205,11 @@ impl Shape {
                     checks.positive(shape.name("length"), *distance, Unit::Metre);
                 }
             }
-            Shape::Prism { outline, height } => {
+            ShapeKey::Prism { outline, height } => {
                 length("height", *height);
                 outline.check(&shape.name("outline"), checks);
             }
-            Shape::Frame {
+            ShapeKey::Frame {
                 outer,
                 opening,
                 bottom,
@@ -220,14 +220,14 @@ impl Shape {
                 checks.number(shape.name("bottom"), *bottom, Unit::Metre);
                 checks.number(shape.name("top"), *top, Unit::Metre);
             }
-            Shape::Wall(wall) => {
+            ShapeKey::Wall(wall) => {
                 length("width", wall.width);
                 checks.points(shape.name("line"), &wall.line);
                 checks.count(shape.name("line"), wall.line.len(), 2);
                 checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }
-            Shape::Triangles { vertices, .. } => checks.points(shape.name("vertices"), vertices),
-            Shape::File(_) | Shape::Sequence(_) => {}
+            ShapeKey::Triangles { vertices, .. } => checks.points(shape.name("vertices"), vertices),
+            ShapeKey::File(_) | ShapeKey::Sequence(_) => {}
         }
     }
 

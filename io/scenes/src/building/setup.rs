@@ -1,6 +1,6 @@
 //! Everything that a simulation is made of.
 
-use crate::bodies::carried::{BodyLoad, CarriedBody};
+use crate::bodies::carried::{CarriedBody, Wrench};
 use crate::holding::bond::Bond;
 use crate::measures::targets::Targets;
 use crate::methods::integration::Integration;
@@ -137,11 +137,11 @@ impl Facts {
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques
     /// about the origins of the frames of those that do not deform, and about the origin of space of the
     /// others.
-    pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<BodyLoad> {
+    pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<Wrench> {
         let driven = &self.origins.driven[..];
         let rigid = simulation.body_loads().into_iter().enumerate();
         let rigid = rigid.map(|(k, load)| {
-            let load = BodyLoad {
+            let load = Wrench {
                 force: load.force.into(),
                 torque: load.torque.into(),
             };
@@ -155,7 +155,7 @@ impl Facts {
         let of_driven = driven.iter().map(|surface| {
             let load = forces.as_ref().map(|forces| {
                 let vertices = surface.vertices.clone().map(VertexId::from_index);
-                BodyLoad::of_vertices(vertices, forces, x, Vector3::zeros())
+                Wrench::of_vertices(vertices, forces, x, Vector3::zeros())
             });
             (surface.number, load.unwrap_or_default())
         });

@@ -5,7 +5,7 @@ use crate::meshes::selection;
 use crate::placing::placed::{PlacedSheet, PlacedSheets};
 use crate::whole::selections::Selected;
 use crate::words::warning::Warning;
-use crate::{Isometry, Material, Mesh, Scene};
+use crate::{IsometryKey, MaterialKey, Mesh, Scene};
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Sheet, VertexId};
 
@@ -74,7 +74,7 @@ fn coarse(sheet: &PlacedSheet<'_>) -> Option<Warning> {
 /// A thickness whose unit is not the metre, as it seems.
 fn thick(sheet: &PlacedSheet<'_>) -> Option<Warning> {
     let of_material = match &sheet.of.material {
-        Some(Material::Plate(plate)) => {
+        Some(MaterialKey::Plate(plate)) => {
             Some((sheet.key.name("material.thickness"), plate.thickness))
         }
         _ => None,
@@ -119,7 +119,7 @@ impl PlacedSheets<'_> {
                 _ => None,
             };
             let soft = match &sheet.of.material {
-                Some(Material::Plate(plate)) => plate.warning(&sheet.key.name("material")),
+                Some(MaterialKey::Plate(plate)) => plate.warning(&sheet.key.name("material")),
                 _ => None,
             };
             let changed = wide.into_iter().chain(reversed);
@@ -127,7 +127,7 @@ impl PlacedSheets<'_> {
             changed.chain(slips)
         });
         let rods = self.list.iter();
-        let rods = rods.filter(|sheet| sheet.of.isometry() == Isometry::Rods);
+        let rods = rods.filter(|sheet| sheet.of.isometry() == IsometryKey::Rods);
         let closed = rods.filter_map(|sheet| {
             let name = match &self.list[..] {
                 [_] => "the surface".to_owned(),

@@ -1,15 +1,15 @@
 //! Contact of the sheet with itself and with obstacles.
 
 use crate::bodies::body;
-use crate::bodies::friction::Friction;
+use crate::bodies::friction::FrictionKey;
 use crate::bodies::obstacle_names;
-use crate::bodies::obstacles::Shape;
+use crate::bodies::obstacles::ShapeKey;
 use crate::holding::switch::When;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
 use crate::words::unit::Unit;
-use crate::{Body, Obstacle};
+use crate::{BodyKey, ObstacleKey};
 use isosheet_collide::{ContactOptions, Stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,14 +24,15 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
-pub struct Contact {
+#[schemars(rename = "Contact")]
+pub struct ContactSettings {
     /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
     pub self_contact: bool,
     /// Friction of sheets and bodies with themselves and one another. (That of an obstacle is given with the
     /// obstacle.)
-    pub friction: Friction,
+    pub friction: FrictionKey,
     /// Friction between two of several sheets, bodies and obstacles, where it is another.
-    pub pair: Vec<SheetPair>,
+    pub pair: Vec<SheetPairKey>,
     /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
     /// smallest height of a face.
     pub activation: Option<f64>,
@@ -62,11 +63,11 @@ pub struct Contact {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct SheetPair {
+pub struct SheetPairKey {
     /// The names of the two: sheets, bodies, and at most one obstacle.
     pub sheets: [String; 2],
     /// Friction between the two.
-    pub friction: Friction,
+    pub friction: FrictionKey,
     /// When they begin to meet; if left out, at the start. Before, they pass through each other. They must
     /// not touch at that moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -76,16 +77,16 @@ pub struct SheetPair {
     pub until: Option<When>,
 }
 
-impl Contact {
+impl ContactSettings {
     pub(crate) fn check(
         &self,
-        bodies: &[Body],
-        obstacles: &[Obstacle],
+        bodies: &[BodyKey],
+        obstacles: &[ObstacleKey],
         key: &Key,
         checks: &mut Checks,
     ) {
         for (k, (key, pair)) in key.name("pair").entries(&self.pair).enumerate() {
-            let is_same = |other: &SheetPair| {
+            let is_same = |other: &SheetPairKey| {
                 let [first, second] = &pair.sheets;
                 other.sheets == pair.sheets || [second, first] == other.sheets.each_ref()
             };
@@ -103,7 +104,7 @@ impl Contact {
             };
             let deforms = |name: &String| {
                 let number = obstacle_names::number_of(obstacles, name);
-                number.is_some_and(|k| matches!(obstacles[k].shape, Shape::Sequence(_)))
+                number.is_some_and(|k| matches!(obstacles[k].shape, ShapeKey::Sequence(_)))
             };
             let is_rigid = |name: &String| is_obstacle(name) && !deforms(name);
             if let Some(switch) = switch.filter(|_| pair.sheets.iter().any(is_rigid)) {

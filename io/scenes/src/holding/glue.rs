@@ -5,15 +5,15 @@ use crate::holding::switch::When;
 use crate::meshes::selection::{ON_LINE, beside_line, by_number, nearest, nearest_in_words, size};
 use crate::placing::placed::PlacedSheets;
 use crate::sheets::several;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
 use crate::words::warning::Warning;
-use crate::{Body, Sheet};
+use crate::{BodyKey, SheetKey};
 use isosheet_mesh::wording::brief;
-use isosheet_mesh::{Sheet as Mesh, VertexId};
+use isosheet_mesh::{Sheet, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct Glue {
+pub struct GlueKey {
     /// The names of the sheets of the two sides, if there are several; of a seam with a body the name of the
     /// sheet and then that of the body.
     #[serde(default)]
@@ -49,7 +49,7 @@ pub struct Glue {
     /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.
     #[serde(default = "closed")]
     #[unit(Factor)]
-    pub closing: Profile,
+    pub closing: ProfileKey,
     /// Stiffness of each pair, N/m. If left out, `1e4 (m g + D / L) / L` with the mass `m` of all sheets,
     /// gravity `g` (9.8 m/s2 if there is none), the largest flexural rigidity `D` and the mean edge length
     /// `L`: a pair that carries all of that is apart by a ten-thousandth of an edge.
@@ -88,8 +88,8 @@ pub struct SeamBend {
     pub angle: f64,
 }
 
-fn closed() -> Profile {
-    Profile::Constant(1.0)
+fn closed() -> ProfileKey {
+    ProfileKey::Constant(1.0)
 }
 
 /// One side of a seam. Points are those of the rest shape before it is placed.
@@ -116,15 +116,21 @@ pub enum SeamSide {
     Nearest(Vec<[f64; 3]>),
 }
 
-/// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
+/// Stiffness of glue in units of `(m g + D / L) / L`, see [`GlueKey::stiffness`].
 const STIFFNESS: f64 = 1e4;
 
 /// Largest distance of the sides of a seam that coincide, as a part of the size of the sheets: above the
 /// round-off of coordinates that went through a text file with seven digits.
 const COINCIDE: f64 = 1e-6;
 
-impl Glue {
-    pub(crate) fn check(&self, all: &[Sheet], bodies: &[Body], key: &Key, checks: &mut Checks) {
+impl GlueKey {
+    pub(crate) fn check(
+        &self,
+        all: &[SheetKey],
+        bodies: &[BodyKey],
+        key: &Key,
+        checks: &mut Checks,
+    ) {
         let body = self
             .body()
             .filter(|name| body::number_of(bodies, name).is_some());
@@ -314,7 +320,7 @@ impl Glue {
 }
 
 impl SeamSide {
-    fn vertices(&self, mesh: &Mesh, key: &Key) -> Result<Vec<VertexId>, Problem> {
+    fn vertices(&self, mesh: &Sheet, key: &Key) -> Result<Vec<VertexId>, Problem> {
         let points = mesh.positions().as_chunks::<3>().0;
         let found = match self {
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,

@@ -3,7 +3,7 @@
 use crate::holding::switch::When;
 use crate::meshes::selection::Selection;
 use crate::meshes::sequence::Sequence;
-use crate::time::pose::Motion;
+use crate::time::pose::MotionKey;
 use crate::words::key::Key;
 use crate::words::part::{Part, all};
 use crate::words::problem::{Checks, Problem};
@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct Support {
+pub struct SupportKey {
     /// The name of the sheet, if there are several and not the vertices of all are meant.
     #[serde(default)]
     pub sheet: Option<String>,
@@ -63,7 +63,7 @@ pub enum Hold {
     #[default]
     Pin,
     /// In a prescribed motion, which is zero at the start: all vertices move as one rigid body.
-    MovingPin(Motion),
+    MovingPin(MotionKey),
     /// As vertices of a mesh in motion move: each keeps the distance and the direction from its vertex there
     /// that it has at the start.
     Follow {
@@ -79,33 +79,33 @@ pub enum Hold {
     Clamp,
     /// Clamped, in a prescribed motion, which is zero at the start: all vertices and the slopes move as one
     /// rigid body.
-    MovingClamp(Motion),
+    MovingClamp(MotionKey),
     /// Clamped, and free to slide along a direction without friction. For plates.
     SlidingClamp {
         /// The direction, of any length.
         direction: [f64; 3],
         /// The motion of clamp and direction.
         #[serde(default)]
-        motion: Motion,
+        motion: MotionKey,
     },
     /// On a curve, along which they slide without friction. They have to be on it at the start.
     Curve {
         /// The curve.
-        shape: Curve,
+        shape: CurveKey,
         /// Its motion.
         #[serde(default)]
-        motion: Motion,
+        motion: MotionKey,
     },
     /// On a surface or on one side of it, without friction. They have to be there at the start.
     Surface {
         /// The surface.
-        shape: Surface,
+        shape: SurfaceKey,
         /// On which side the vertices may be.
         #[serde(default)]
         side: SurfaceSide,
         /// Its motion.
         #[serde(default)]
-        motion: Motion,
+        motion: MotionKey,
     },
 }
 
@@ -139,7 +139,7 @@ pub enum Followed {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[checked]
-pub enum Curve {
+pub enum CurveKey {
     /// A straight line without ends.
     Line {
         /// A point of it, metres.
@@ -175,7 +175,7 @@ pub enum Curve {
     },
 }
 
-impl Curve {
+impl CurveKey {
     fn check(&self, key: &Key, checks: &mut Checks) {
         let (key, before) = (&key.name(self.name()), checks.problems.len());
         match self {
@@ -224,7 +224,7 @@ impl Curve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[checked]
-pub enum Surface {
+pub enum SurfaceKey {
     /// A plane.
     Plane {
         /// A point of it, metres.
@@ -250,7 +250,7 @@ pub enum Surface {
     },
 }
 
-impl Surface {
+impl SurfaceKey {
     fn check(&self, key: &Key, checks: &mut Checks) {
         let (key, before) = (&key.name(self.name()), checks.problems.len());
         match self {
@@ -296,7 +296,7 @@ pub enum SurfaceSide {
     Inside,
 }
 
-impl Support {
+impl SupportKey {
     /// Vertices that stay where they are at the start.
     pub fn pin(at: Selection) -> Self {
         Self {
@@ -343,7 +343,7 @@ impl Hold {
     }
 
     /// Its motion, if it has one.
-    fn motion(&self) -> Option<&Motion> {
+    fn motion(&self) -> Option<&MotionKey> {
         let found = all(self, Key::root()).pop();
         found.map(|(_, motion)| motion)
     }
@@ -360,9 +360,9 @@ impl Hold {
     }
 
     /// The motion of the slopes that it holds, if it does.
-    pub(crate) fn clamp_motion(&self) -> Option<Motion> {
+    pub(crate) fn clamp_motion(&self) -> Option<MotionKey> {
         match self {
-            Self::Clamp => Some(Motion::default()),
+            Self::Clamp => Some(MotionKey::default()),
             Self::MovingClamp(motion) | Self::SlidingClamp { motion, .. } => Some(motion.clone()),
             Self::Pin
             | Self::MovingPin(_)
@@ -373,7 +373,7 @@ impl Hold {
     }
 }
 
-impl Curve {
+impl CurveKey {
     fn name(&self) -> &'static str {
         match self {
             Self::Line { .. } => "line",
@@ -406,7 +406,7 @@ impl Curve {
     }
 }
 
-impl Surface {
+impl SurfaceKey {
     fn name(&self) -> &'static str {
         match self {
             Self::Plane { .. } => "plane",
@@ -447,6 +447,6 @@ impl SurfaceSide {
 }
 
 /// The motion of a curve or surface, if it has any.
-pub fn frame_motion(motion: &Motion) -> Option<RigidMotion> {
-    (*motion != Motion::default()).then(|| motion.of_body(Isometry3::identity()).into())
+pub fn frame_motion(motion: &MotionKey) -> Option<RigidMotion> {
+    (*motion != MotionKey::default()).then(|| motion.of_body(Isometry3::identity()).into())
 }

@@ -1,7 +1,7 @@
 //! The air around the sheet.
 
-use crate::AttachedFlow;
-use crate::time::profile::Profile;
+use crate::AttachedFlowKey;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 #[checked]
-pub struct Air {
+pub struct AirKey {
     /// Density, kg/m3: that of air at 20 degrees Celsius by default.
     pub density: f64,
     /// Coefficient of the drag across the face, of a plate with its two sides: 1.17 of squares and disks, up
@@ -34,12 +34,12 @@ pub struct Air {
     pub tangential: f64,
     /// Components of the velocity of the air, m/s. A gust is a component that changes with time.
     #[unit(MetrePerSecond)]
-    pub wind: [Profile; 3],
+    pub wind: [ProfileKey; 3],
     /// The sheet along which the air flows. Without it the flow separates everywhere.
-    pub attached: Option<AttachedFlow>,
+    pub attached: Option<AttachedFlowKey>,
 }
 
-impl Default for Air {
+impl Default for AirKey {
     /// Still air.
     fn default() -> Self {
         let engine::Air {
@@ -58,7 +58,7 @@ impl Default for Air {
     }
 }
 
-impl Air {
+impl AirKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let density = Unit::KilogramPerCubicMetre;
         checks.not_negative(key.name("density"), self.density, density);
@@ -72,7 +72,7 @@ impl Air {
             density: self.density,
             normal: self.normal,
             tangential: self.tangential,
-            wind: self.wind.each_ref().map(Profile::as_given).into(),
+            wind: self.wind.each_ref().map(ProfileKey::as_given).into(),
         }
     }
 }

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct AttachedFlow {
+pub struct AttachedFlowKey {
     /// The name of the sheet, if there are several and not all are meant.
     #[serde(default)]
     pub sheet: Option<String>,
@@ -40,7 +40,7 @@ fn rows() -> usize {
     isosheet_attached_flow::AttachedFlow::ROWS
 }
 
-impl AttachedFlow {
+impl AttachedFlowKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("rows"), self.rows, 2);
     }

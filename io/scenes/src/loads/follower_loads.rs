@@ -1,7 +1,7 @@
 //! Loads that follow the sheet: pressure, enclosed gas, moments.
 
 use crate::meshes::selection::Selection;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -36,7 +36,7 @@ pub struct Pressure {
     pub at: Selection,
     /// Size, pascals.
     #[unit(Pascal)]
-    pub size: Profile,
+    pub size: ProfileKey,
 }
 
 fn everywhere() -> Selection {
@@ -58,7 +58,7 @@ fn everywhere() -> Selection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct Gas {
+pub struct GasKey {
     /// A name, by which measures find it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -78,7 +78,7 @@ pub struct Gas {
     /// let out has a negative sign. It is added to `V1`.
     #[serde(default)]
     #[unit(CubicMetre)]
-    pub added: Profile,
+    pub added: ProfileKey,
 }
 
 fn atmosphere() -> f64 {
@@ -111,7 +111,7 @@ pub struct Moment {
     pub axis: [f64; 3],
     /// Size of the whole moment, newton metres.
     #[unit(NewtonMetre)]
-    pub size: Profile,
+    pub size: ProfileKey,
 }
 
 impl Pressure {
@@ -120,7 +120,7 @@ impl Pressure {
     }
 }
 
-impl Gas {
+impl GasKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         check_sheets(&self.sheets, key, checks);
         checks.positive(key.name("ambient"), self.ambient, Unit::Pascal);

@@ -1,8 +1,8 @@
 //! Forces on the sheet.
 
-use crate::loads::follower_loads::{Gas, Moment, Pressure};
+use crate::loads::follower_loads::{GasKey, Moment, Pressure};
 use crate::meshes::selection::Selection;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::plain_name::check_name;
@@ -39,7 +39,7 @@ pub struct Forces {
     /// Pressures on faces.
     pub pressure: Vec<Pressure>,
     /// Gas in closed surfaces.
-    pub gas: Vec<Gas>,
+    pub gas: Vec<GasKey>,
     /// Moments on lines of edges.
     pub moment: Vec<Moment>,
     /// Uniform accelerations that change with time, such as those of a frame that is shaken.
@@ -70,7 +70,7 @@ pub struct Load {
     pub frame: Frame,
     /// Size of the whole load, newtons.
     #[unit(Newton)]
-    pub size: Profile,
+    pub size: ProfileKey,
 }
 
 /// What the direction of a load turns with.
@@ -99,7 +99,7 @@ pub struct Acceleration {
     pub direction: [f64; 3],
     /// Size, m/s2.
     #[unit(MetrePerSquareSecond)]
-    pub size: Profile,
+    pub size: ProfileKey,
 }
 
 impl Forces {

@@ -2,10 +2,10 @@
 
 use crate::meshes::direction::FaceTexture;
 use crate::meshes::drawing::DrawingFile;
-use crate::meshes::mesh_file::{Files, MeshFile};
+use crate::meshes::mesh_file::{Files, MeshFileKey};
 use crate::meshes::outline::Outline;
 use crate::meshes::pattern::{
-    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+    DegreeFourKey, EdgeRoles, Hypar, Kresling, MiuraKey, SquareTwist, Waterbomb, Yoshimura,
 };
 use crate::words::error::SceneError;
 use crate::words::key::Key;
@@ -48,7 +48,7 @@ pub enum Mesh {
         rows: usize,
         /// How the cells are cut.
         #[serde(default)]
-        diagonals: Diagonals,
+        diagonals: DiagonalsKey,
     },
     /// A disk about the origin in concentric rings of triangles.
     Disk {
@@ -102,9 +102,9 @@ pub enum Mesh {
         radius: f64,
     },
     /// Miura's crease pattern, with mountains and valleys.
-    Miura(Miura),
+    Miura(MiuraKey),
     /// A crease pattern of four creases that meet in a vertex.
-    DegreeFour(DegreeFour),
+    DegreeFour(DegreeFourKey),
     /// The waterbomb tessellation, with mountains and valleys.
     Waterbomb(Waterbomb),
     /// Yoshimura's crease pattern, with mountains and valleys.
@@ -123,7 +123,7 @@ pub enum Mesh {
         faces: Vec<[u32; 3]>,
     },
     /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
-    File(MeshFile),
+    File(MeshFileKey),
     /// A drawing: SVG or DXF, with its creases, cuts and holes.
     Drawing(DrawingFile),
 }
@@ -131,7 +131,7 @@ pub enum Mesh {
 /// How the cells of a rectangle are cut into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
-pub enum Diagonals {
+pub enum DiagonalsKey {
     /// In alternating directions.
     #[default]
     UnionJack,
@@ -356,9 +356,9 @@ impl Mesh {
                 diagonals,
             } => {
                 let diagonals = match diagonals {
-                    Diagonals::UnionJack => generate::Diagonals::UnionJack,
-                    Diagonals::Falling => generate::Diagonals::Falling,
-                    Diagonals::Rising => generate::Diagonals::Rising,
+                    DiagonalsKey::UnionJack => generate::Diagonals::UnionJack,
+                    DiagonalsKey::Falling => generate::Diagonals::Falling,
+                    DiagonalsKey::Rising => generate::Diagonals::Rising,
                 };
                 generate::grid(*columns, *rows, *width, *height, diagonals)
             }
@@ -385,7 +385,7 @@ impl Mesh {
             Self::Octagon { radius } => generate::octagon_244(*radius),
             Self::Miura(miura) => {
                 let pattern = miura.pattern().map_err(|e| generator_problem(&key, &e))?;
-                let roles = Miura::roles(&pattern);
+                let roles = MiuraKey::roles(&pattern);
                 return Ok(RestMesh::of(pattern, roles));
             }
             Self::DegreeFour(vertex) => return of_pattern(&key, vertex.pattern()),
@@ -433,7 +433,7 @@ fn of_pattern(key: &Key, pattern: Result<FoldPattern, GenerateError>) -> Result<
     Ok(RestMesh::of(pattern, roles))
 }
 
-fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh, Problem> {
+fn read_sheet(file: &MeshFileKey, key: &Key, files: &mut Files) -> Result<RestMesh, Problem> {
     let mesh = files.read(file, key)?;
     rest_mesh(&mesh).map_err(|error| {
         let path = file.path.display();

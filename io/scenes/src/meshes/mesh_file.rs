@@ -29,7 +29,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 #[checked]
-pub struct MeshFile {
+pub struct MeshFileKey {
     /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A FOLD file with a unit of
@@ -70,7 +70,7 @@ pub enum PolygonFaces {
     Triangulate,
 }
 
-impl MeshFile {
+impl MeshFileKey {
     /// A file in metres with z upwards.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self {
@@ -119,7 +119,7 @@ pub struct Files {
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
     /// The archives of meshes in motion.
     motions: BTreeMap<PathBuf, Arc<[u8]>>,
-    meshes: Vec<(MeshFile, Arc<isosheet_formats::MeshFile>)>,
+    meshes: Vec<(MeshFileKey, Arc<isosheet_formats::MeshFile>)>,
     sequences: Vec<(Sequence, Arc<MovingMesh>)>,
 }
 
@@ -157,7 +157,7 @@ impl Files {
     /// The mesh of a file, in metres and with z upwards; `key` is the place of the file in the scene.
     pub(crate) fn read(
         &mut self,
-        file: &MeshFile,
+        file: &MeshFileKey,
         key: &Key,
     ) -> Result<Arc<isosheet_formats::MeshFile>, Problem> {
         self.mesh(file).map_err(|e| {
@@ -200,7 +200,7 @@ impl Files {
     /// [`Self::read`] with the error of the reader.
     pub(crate) fn mesh(
         &mut self,
-        file: &MeshFile,
+        file: &MeshFileKey,
     ) -> Result<Arc<isosheet_formats::MeshFile>, MeshFileError> {
         if let Some((_, mesh)) = self.meshes.iter().find(|(known, _)| known == file) {
             return Ok(mesh.clone());

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct Miura {
+pub struct MiuraKey {
     /// Number of panels along x.
     pub columns: usize,
     /// Number of panels along y.
@@ -46,7 +46,7 @@ pub struct Miura {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct DegreeFour {
+pub struct DegreeFourKey {
     /// Angles from crease 1 to 2 and from 2 to 3, degrees; the other two are what is left of 180 degrees of
     /// each.
     pub sectors: [f64; 2],
@@ -194,7 +194,7 @@ impl From<&FoldPattern> for EdgeRoles {
     }
 }
 
-impl Miura {
+impl MiuraKey {
     /// The flat sheet with its mountains and valleys.
     ///
     /// # Errors
@@ -222,7 +222,7 @@ impl Miura {
     }
 }
 
-impl DegreeFour {
+impl DegreeFourKey {
     /// The flat sheet with its mountains and valleys.
     pub(crate) fn pattern(&self) -> Result<FoldPattern, GenerateError> {
         let kinematics = self.kinematics();

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
-pub struct Chart {
+pub struct ChartKey {
     /// The coordinates.
     pub coordinates: Coordinates,
     /// The time integration.
@@ -154,7 +154,7 @@ pub enum NearSingularity {
 /// cannot be stopped.
 const MOST_PARTS: f64 = 1e4;
 
-impl Chart {
+impl ChartKey {
     /// Checks the values for steps of `step` seconds.
     pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
         let (Substep::Fixed(longest) | Substep::Adaptive { max: longest, .. }) = self.substep;

@@ -1,6 +1,6 @@
 //! How the motion of a scene is computed.
 
-use crate::methods::chart::Chart;
+use crate::methods::chart::ChartKey;
 use isosheet_dynamics::{Method, StepControl};
 
 /// How the motion is computed.
@@ -14,5 +14,5 @@ pub enum Integration {
         control: StepControl,
     },
     /// In the chart that exists at the start.
-    InChart(Chart),
+    InChart(ChartKey),
 }

@@ -1,6 +1,6 @@
 //! How the motion is computed.
 
-use crate::methods::chart::Chart;
+use crate::methods::chart::ChartKey;
 use crate::methods::integration::Integration;
 use crate::words::key::Key;
 use crate::words::part::Part;
@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 #[checked]
-pub struct Method {
+pub struct MethodKey {
     /// The integrator.
     pub integrator: Integrator,
     /// Length of a step, seconds; the longest one where an accuracy is asked for.
@@ -47,11 +47,11 @@ pub struct Method {
     /// result depends on it.
     pub max_factorisations: usize,
     /// What to do when even that is rejected.
-    pub fallback: Fallback,
+    pub fallback: FallbackKey,
     /// What to do when moving supports ask for more than the lengths allow.
     pub taut: Taut,
     /// How the motion is computed with `integrator = "chart"`.
-    pub chart: Option<Chart>,
+    pub chart: Option<ChartKey>,
 }
 
 /// The integrator.
@@ -78,7 +78,7 @@ pub enum Integrator {
 /// What to do when even the smallest part of a step is rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
-pub enum Fallback {
+pub enum FallbackKey {
     /// End the run with an error.
     #[default]
     Refuse,
@@ -100,7 +100,7 @@ pub enum Taut {
 /// Step of the default, seconds: that of common displays.
 const STEP: f64 = 1.0 / 60.0;
 
-impl Default for Method {
+impl Default for MethodKey {
     fn default() -> Self {
         Self {
             integrator: Integrator::default(),
@@ -111,7 +111,7 @@ impl Default for Method {
             rod_stiffness: None,
             min_fraction: engine::StepControl::default().min_fraction,
             max_factorisations: engine::StepControl::default().max_factorisations,
-            fallback: Fallback::default(),
+            fallback: FallbackKey::default(),
             taut: Taut::default(),
             chart: None,
         }
@@ -125,7 +125,7 @@ impl Integrator {
     }
 }
 
-impl Method {
+impl MethodKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("step"), self.step, Unit::Second);
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
@@ -243,8 +243,8 @@ impl Method {
             min_fraction: self.min_fraction,
             max_factorisations: self.max_factorisations,
             fallback: match self.fallback {
-                Fallback::Refuse => engine::Fallback::Refuse,
-                Fallback::ImplicitEuler => {
+                FallbackKey::Refuse => engine::Fallback::Refuse,
+                FallbackKey::ImplicitEuler => {
                     engine::Fallback::ImplicitEuler(ImplicitOptions::default())
                 }
             },

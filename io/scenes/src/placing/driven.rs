@@ -1,6 +1,6 @@
 //! Obstacles that deform: meshes in motion beside the sheets.
 
-use crate::bodies::obstacles::{Obstacle, Shape};
+use crate::bodies::obstacles::{ObstacleKey, ShapeKey};
 use crate::meshes::sequence::Sequence;
 use crate::placing::driven_surface::DrivenSurface;
 use crate::words::key::Key;
@@ -31,7 +31,7 @@ impl DrivenObstacles {
     /// Puts obstacles beside surfaces that end with vertex, edge and face of these numbers, and a model with
     /// so many vertices; `motion` reads a mesh in motion at a place of the scene.
     pub(crate) fn new(
-        obstacles: &[Obstacle],
+        obstacles: &[ObstacleKey],
         mut end: [usize; 3],
         model_vertices: usize,
         mut motion: impl FnMut(&Sequence, &Key) -> Result<Arc<MovingMesh>, Problem>,
@@ -39,7 +39,7 @@ impl DrivenObstacles {
         let mut list = Vec::new();
         let mut first = model_vertices;
         for (number, (key, of)) in Key::root().name("obstacle").entries(obstacles).enumerate() {
-            let Shape::Sequence(sequence) = &of.shape else {
+            let ShapeKey::Sequence(sequence) = &of.shape else {
                 continue;
             };
             let key = key.name("shape.sequence");

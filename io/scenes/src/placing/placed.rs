@@ -2,7 +2,7 @@
 
 use crate::meshes::direction::{Direction, FaceTexture, gradients};
 use crate::meshes::mesh::RestMesh;
-use crate::meshes::mesh_file::{Files, MeshFile};
+use crate::meshes::mesh_file::{Files, MeshFileKey};
 use crate::meshes::pattern::EdgeRoles;
 use crate::meshes::selection::InPlace;
 use crate::sheets::patched::patched;
@@ -12,7 +12,7 @@ use crate::sheets::several::sheet_key;
 use crate::words::error::SceneError;
 use crate::words::problem::Problem;
 use crate::words::resolution::check_shape;
-use crate::{Key, Selection, Sheet as SheetOfScene, Weight};
+use crate::{Key, Selection, SheetKey, Weight};
 use isosheet_dynamics::Patched;
 use isosheet_formats::{FaceGroups, ReadingChanges};
 use isosheet_mesh::generate::FoldAssignment;
@@ -47,13 +47,13 @@ pub(crate) struct Form {
 /// A sheet in its place.
 pub(crate) struct PlacedSheet<'a> {
     /// What the scene says of it.
-    pub(crate) of: Cow<'a, SheetOfScene>,
+    pub(crate) of: Cow<'a, SheetKey>,
     pub(crate) key: Key,
     pub(crate) form: Arc<Form>,
     /// Where it is in the union.
     pub(crate) part: Part,
     /// What it is, and what its patches are as sheets.
-    pub(crate) patched: Patched<SheetOfScene>,
+    pub(crate) patched: Patched<SheetKey>,
     mass: MassMatrix,
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct PlacedSheets<'a> {
 impl<'a> PlacedSheets<'a> {
     /// Puts sheets in their places. Their forms are made where `forms` has none yet.
     pub(crate) fn new(
-        sheets: &'a [SheetOfScene],
+        sheets: &'a [SheetKey],
         forms: &mut Vec<Arc<Form>>,
         files: &mut Files,
     ) -> Result<Self, SceneError> {
@@ -195,10 +195,10 @@ impl<'a> PlacedSheets<'a> {
 
 /// A sheet with the direction that the texture of its mesh gives to each face, if it is meant.
 fn with_texture<'a>(
-    of: &'a SheetOfScene,
+    of: &'a SheetKey,
     form: &Form,
     key: &Key,
-) -> Result<Cow<'a, SheetOfScene>, Problem> {
+) -> Result<Cow<'a, SheetKey>, Problem> {
     let Some(Direction::Texture(texture)) = of.direction else {
         return Ok(Cow::Borrowed(of));
     };
@@ -206,15 +206,15 @@ fn with_texture<'a>(
     let of_mesh = gradients(mesh, &form.texture, texture, &key.name("direction"))?;
     let faces = form.unplaced.faces_of_mesh().into_iter();
     let placed = faces.map(|face| of.placed(of_mesh[face as usize]));
-    Ok(Cow::Owned(SheetOfScene {
+    Ok(Cow::Owned(SheetKey {
         direction: Some(Direction::Faces(Arc::new(placed.collect()))),
         ..of.clone()
     }))
 }
 
 /// The masses of a sheet with patches.
-fn of_densities(form: &Form, patched: &Patched<SheetOfScene>) -> Result<MassMatrix, MeshError> {
-    let densities = patched.map(SheetOfScene::areal_density);
+fn of_densities(form: &Form, patched: &Patched<SheetKey>) -> Result<MassMatrix, MeshError> {
+    let densities = patched.map(SheetKey::areal_density);
     let of_faces = densities.of_faces(form.placed.topology().face_count());
     let of_faces = of_faces.expect("patches have faces of their sheet");
     let density = |face: FaceId| *of_faces[face.index()];
@@ -231,7 +231,7 @@ impl Form {
         }
     }
 
-    fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
+    fn new(of: &SheetKey, key: &Key, files: &mut Files) -> Result<Self, Problem> {
         let mesh_key = key.name("mesh");
         let RestMesh {
             sheet,
@@ -248,7 +248,7 @@ impl Form {
             .map_err(|e| Problem::from_error(mesh_key.clone(), &e))?;
         check_shape(&placed, &mesh_key.name(of.mesh.name()))?;
         // Positions of a file with the same mesh, in space.
-        let mut shape = |file: &MeshFile, key: Key| {
+        let mut shape = |file: &MeshFileKey, key: Key| {
             let shape = files.read(file, &key)?;
             if triangles(&shape.faces) != triangles(&unplaced.mesh().face_indices()) {
                 let message = "the file does not have the vertices and faces of `sheet.mesh`";

@@ -1,9 +1,9 @@
 //! The bodies of a scene in their places.
 
-use crate::bodies::body::Body;
+use crate::bodies::body::BodyKey;
 use crate::bodies::carried::CarriedBody;
 use crate::bodies::guides::{self, Guide};
-use crate::bodies::obstacles::Shape;
+use crate::bodies::obstacles::ShapeKey;
 use crate::bodies::round_bodies;
 use crate::meshes::mesh_file::Files;
 use crate::meshes::selection::{InPlace, Selection};
@@ -28,7 +28,7 @@ use nalgebra::{Point3, Vector3};
 /// A body in its place.
 pub(crate) struct PlacedBody<'a> {
     /// What the scene says of it.
-    pub(crate) of: &'a Body,
+    pub(crate) of: &'a BodyKey,
     pub(crate) key: Key,
     pub(crate) solid: Solid,
     pub(crate) body: RigidBody,
@@ -57,7 +57,7 @@ pub(crate) struct Surface {
 impl<'a> PlacedBodies<'a> {
     /// Puts bodies in their places beside sheets.
     pub(crate) fn new(
-        bodies: &'a [Body],
+        bodies: &'a [BodyKey],
         sheets: &PlacedSheets<'_>,
         files: &mut Files,
     ) -> Result<Self, Problem> {
@@ -341,7 +341,7 @@ impl PlacedBody<'_> {
     pub(crate) fn force(
         &self,
         number: usize,
-        force: &guides::BodyForce,
+        force: &guides::BodyForceKey,
     ) -> Result<(Key, BodyForce), Problem> {
         let key = self.key.name("force").entry(number);
         let at = force.at.unwrap_or_else(|| self.body.centre());
@@ -356,7 +356,7 @@ impl PlacedBody<'_> {
     pub(crate) fn torque(
         &self,
         number: usize,
-        torque: &guides::BodyTorque,
+        torque: &guides::BodyTorqueKey,
     ) -> Result<(Key, BodyTorque), Problem> {
         let key = self.key.name("torque").entry(number);
         match BodyTorque::new(self.vertices(), torque.axis, torque.size.as_given()) {
@@ -400,7 +400,7 @@ impl PlacedBody<'_> {
     }
 }
 
-impl Body {
+impl BodyKey {
     /// A rigid body whose corners its guide can hold.
     fn guided(&self, body: RigidBody, key: &Key) -> Result<RigidBody, Problem> {
         let guided = match &self.guide {
@@ -419,7 +419,7 @@ impl Body {
     fn solid(&self, shape: &geometry::Shape, key: &Key) -> Result<Solid, Problem> {
         let key = key.name("shape");
         let at = match self.shape {
-            Shape::File(_) => key.name("file.path"),
+            ShapeKey::File(_) => key.name("file.path"),
             _ => key.name(self.shape.name()),
         };
         let mesh = shape.triangles(self.sides());

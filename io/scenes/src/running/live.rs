@@ -14,8 +14,8 @@ use crate::time::profile::{Change, Course};
 use crate::words::edit::{Edit, EditError, no_function, no_motion};
 use crate::words::key::Key;
 use crate::{
-    Body, BodyLoad, CarriedBody, Facts, FramePose, Method, Motion, Problem, Profile, Scene,
-    SceneError, SceneFile, SceneFileError, Setup,
+    BodyKey, CarriedBody, Facts, FramePose, MethodKey, MotionKey, Problem, ProfileKey, Scene,
+    SceneError, SceneFile, SceneFileError, Setup, Wrench,
 };
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_files::DataError;
@@ -238,12 +238,12 @@ impl LiveScene {
     }
 
     /// What touches bodies, does to each of them at the end of the last step.
-    pub fn body_loads(&self) -> Vec<BodyLoad> {
+    pub fn body_loads(&self) -> Vec<Wrench> {
         CarriedBody::contact_loads(&self.under_way.facts.bodies, &self.under_way.simulation)
     }
 
     /// What its guide does to each body that has one, in the last step, by the number of the body.
-    pub fn guide_loads(&self) -> Vec<(usize, BodyLoad)> {
+    pub fn guide_loads(&self) -> Vec<(usize, Wrench)> {
         let bodies = self.under_way.facts.bodies.iter().enumerate();
         let loads =
             bodies.filter_map(|(k, body)| Some((k, body.guide_load(&self.under_way.simulation)?)));
@@ -251,7 +251,7 @@ impl LiveScene {
     }
 
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene.
-    pub fn obstacle_loads(&self) -> Vec<BodyLoad> {
+    pub fn obstacle_loads(&self) -> Vec<Wrench> {
         self.under_way
             .facts
             .obstacle_loads(&self.under_way.simulation)
@@ -370,7 +370,7 @@ impl LiveScene {
                     let mut functions = scene.functions_mut().into_iter();
                     let found = functions.find(|(place, _)| place == key);
                     let (_, function) = found.ok_or_else(|| refused(no_function))?;
-                    *function = Profile::Course(Course::Ramp(Change {
+                    *function = ProfileKey::Course(Course::Ramp(Change {
                         from: function.value(begin),
                         to: *to,
                         begin,
@@ -447,7 +447,7 @@ impl LiveScene {
 }
 
 /// The rigid motions of a scene that some keys are those of, or of a part.
-fn moved_by(scene: &mut Scene, targets: &[(Key, Target)]) -> Vec<(Key, Motion)> {
+fn moved_by(scene: &mut Scene, targets: &[(Key, Target)]) -> Vec<(Key, MotionKey)> {
     let all = scene.motions_mut().into_iter();
     let driven = all.filter(|moved| targets.iter().any(|(key, _)| key.is_within(&moved.key)));
     driven
@@ -462,11 +462,12 @@ fn other_periods() -> Problem {
 
 /// What a change must not change: where the sheet starts and how the motion is computed.
 fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
-    let method = |scene: &Scene| Method {
+    let method = |scene: &Scene| MethodKey {
         step: before.method.step,
         ..scene.method.clone()
     };
-    let bodies = |scene: &Scene| -> Vec<Body> { scene.body.iter().map(Body::lasting).collect() };
+    let bodies =
+        |scene: &Scene| -> Vec<BodyKey> { scene.body.iter().map(BodyKey::lasting).collect() };
     let (old, new) = (&before.sheet, &after.sheet);
     if old.len() != new.len() {
         let message = "the number of sheets does not change during a simulation";
@@ -483,7 +484,8 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         checks.push((key.name("refine"), old.refine == new.refine));
         checks.push((key.name("placement"), old.placement == new.placement));
         checks.push((key.name("start"), old.start == new.start));
-        let shape = |sheet: &crate::Sheet| sheet.curl.as_ref().and_then(|curl| curl.shape.clone());
+        let shape =
+            |sheet: &crate::SheetKey| sheet.curl.as_ref().and_then(|curl| curl.shape.clone());
         checks.push((key.name("curl.shape"), shape(old) == shape(new)));
     }
     let changed = checks.into_iter().filter(|(_, same)| !same);

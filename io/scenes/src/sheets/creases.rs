@@ -5,7 +5,7 @@ use crate::meshes::pattern::EdgeRoles;
 use crate::meshes::selection::{ON_LINE, beside_line, size};
 use crate::sheets::refined::Refined;
 use crate::sheets::yields::CreaseYield;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
@@ -48,7 +48,7 @@ pub struct Crease {
     /// are counter-clockwise, negative for a mountain.
     #[serde(default)]
     #[unit(Degree)]
-    pub angle: Profile,
+    pub angle: ProfileKey,
     /// When it yields. If left out, never: it comes back to its angle.
     #[serde(default, rename = "yield")]
     pub yields: Option<CreaseYield>,
@@ -166,7 +166,7 @@ pub(crate) fn in_radians(creases: &[Crease]) -> Option<Warning> {
 impl Crease {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("stiffness"), self.stiffness, Unit::Newton);
-        if let Profile::Constant(angle) = self.angle
+        if let ProfileKey::Constant(angle) = self.angle
             && angle.is_finite()
         {
             checks.within(key.name("angle"), angle, [-180.0, 180.0]);

@@ -1,8 +1,8 @@
 //! The curvature that a sheet has by itself.
 
 use crate::meshes::direction::Direction;
-use crate::meshes::mesh_file::MeshFile;
-use crate::time::profile::Profile;
+use crate::meshes::mesh_file::MeshFileKey;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct Curl {
+pub struct CurlKey {
     /// The direction along which the sheet is curved, in the frame of the mesh, of any length. If left out,
     /// that of the sheet.
     #[serde(default)]
@@ -47,18 +47,18 @@ pub struct Curl {
     /// In place of all of these: a shape with the vertices and faces of `mesh`, whose curvature the sheet
     /// has, face by face. Lengths stay those of `mesh`.
     #[serde(default)]
-    pub shape: Option<MeshFile>,
+    pub shape: Option<MeshFileKey>,
     /// A factor of time by which the curvatures are multiplied.
     #[serde(default = "one")]
     #[unit(Factor)]
-    pub profile: Profile,
+    pub profile: ProfileKey,
 }
 
-fn one() -> Profile {
-    Profile::Constant(1.0)
+fn one() -> ProfileKey {
+    ProfileKey::Constant(1.0)
 }
 
-impl Curl {
+impl CurlKey {
     /// The curvature by its direction, of a curl without a shape.
     pub(crate) fn tensor(&self) -> Curvature {
         let either = |k: Option<f64>, radius: Option<f64>| {

@@ -2,11 +2,11 @@
 
 use crate::Mesh;
 use crate::meshes::foreign;
-use crate::meshes::mesh_file::{Files, MeshFile};
+use crate::meshes::mesh_file::{Files, MeshFileKey};
 use crate::sheets::fold_group::{FoldGroup, PatternCrease};
 use crate::sheets::refined::Refined;
-use crate::sheets::sheet::{Isometry, Sheet as SheetOfScene};
-use crate::time::profile::{Change, Course, Profile};
+use crate::sheets::sheet::{IsometryKey, SheetKey};
+use crate::time::profile::{Change, Course, ProfileKey};
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
@@ -62,7 +62,7 @@ pub struct Folding {
     /// go smoothly from the angles of the start to the whole ones within `time`. Not beside an `order`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[unit(Factor)]
-    pub course: Option<Profile>,
+    pub course: Option<ProfileKey>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
     /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
@@ -280,7 +280,7 @@ impl Folding {
             }
             (Mesh::File(file), Some(number)) => {
                 let frame = Some(number.clone());
-                let file = MeshFile {
+                let file = MeshFileKey {
                     frame,
                     ..file.clone()
                 };
@@ -382,7 +382,7 @@ impl Folding {
     pub(crate) fn springs(
         &self,
         targets: &FoldTargets,
-        of: &SheetOfScene,
+        of: &SheetKey,
         sheet: &Sheet,
         x: &[f64],
     ) -> [Vec<CreaseSpring>; 2] {
@@ -397,11 +397,11 @@ impl Folding {
             }
         };
         let flat_stiffness = self.flat_stiffness.or(match of.isometry() {
-            Isometry::Rods => Some(FLAT_STIFFNESS * self.stiffness),
-            Isometry::Elastic { .. } => None,
+            IsometryKey::Rods => Some(FLAT_STIFFNESS * self.stiffness),
+            IsometryKey::Elastic { .. } => None,
         });
         let driven = targets.creases.iter().zip(&targets.groups);
-        let smooth = Profile::smooth_step(1.0, self.time);
+        let smooth = ProfileKey::smooth_step(1.0, self.time);
         let other = self.course.as_ref().filter(|course| **course != smooth);
         let driven = driven.map(|(&(edge, target), &group)| {
             let spring = spring(edge, self.stiffness, target, self.turn_of(group));
@@ -450,7 +450,7 @@ fn course(start: f64, target: f64, [begin, end]: [f64; 2]) -> RestAngle {
         begin,
         end,
     };
-    Profile::Course(Course::SmoothStep(change))
+    ProfileKey::Course(Course::SmoothStep(change))
         .as_given()
         .into()
 }

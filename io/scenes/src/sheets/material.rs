@@ -25,7 +25,7 @@ use std::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Part)]
 #[serde(untagged)]
-pub enum Material {
+pub enum MaterialKey {
     /// One of the materials that have a name.
     #[schemars(extend("examples" = engine::Material::names().collect::<Vec<_>>()))]
     Named(String),
@@ -168,7 +168,7 @@ impl Plate {
     }
 }
 
-impl Material {
+impl MaterialKey {
     /// The material of a name.
     pub fn named(name: impl Into<String>) -> Self {
         Self::Named(name.into())
@@ -231,7 +231,7 @@ impl Material {
     }
 }
 
-impl<'de> Deserialize<'de> for Material {
+impl<'de> Deserialize<'de> for MaterialKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(MaterialVisitor)
     }
@@ -240,7 +240,7 @@ impl<'de> Deserialize<'de> for Material {
 struct MaterialVisitor;
 
 impl<'de> Visitor<'de> for MaterialVisitor {
-    type Value = Material;
+    type Value = MaterialKey;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
@@ -248,11 +248,11 @@ impl<'de> Visitor<'de> for MaterialVisitor {
         )
     }
 
-    fn visit_str<E>(self, name: &str) -> Result<Material, E> {
-        Ok(Material::named(name))
+    fn visit_str<E>(self, name: &str) -> Result<MaterialKey, E> {
+        Ok(MaterialKey::named(name))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Material, A::Error> {
-        Plate::deserialize(MapAccessDeserializer::new(map)).map(Material::Plate)
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<MaterialKey, A::Error> {
+        Plate::deserialize(MapAccessDeserializer::new(map)).map(MaterialKey::Plate)
     }
 }

@@ -1,7 +1,7 @@
 //! A part of a sheet that is of another material.
 
 use crate::meshes::selection::Selection;
-use crate::sheets::material::Material;
+use crate::sheets::material::MaterialKey;
 use crate::words::part::Part;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ pub struct Patch {
     /// Its faces: those by number or of the group, or otherwise those all corners of which are selected.
     pub at: Selection,
     /// What it is made of.
-    pub material: Material,
+    pub material: MaterialKey,
     /// The direction of its material, in the frame of the mesh. If left out, that of the sheet.
     #[serde(default)]
     pub direction: Option<[f64; 3]>,

@@ -2,14 +2,14 @@
 
 use crate::meshes::selection::InPlace;
 use crate::sheets::patch::Patch;
-use crate::sheets::sheet::{Bending, Sheet};
+use crate::sheets::sheet::{Bending, SheetKey};
 use crate::words::key::Key;
 use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
 use isosheet_dynamics::Patched;
 
 /// Checks the patches of a sheet.
-pub(crate) fn check(sheet: &Sheet, key: &Key, checks: &mut Checks) {
+pub(crate) fn check(sheet: &SheetKey, key: &Key, checks: &mut Checks) {
     for (key, patch) in key.name("patch").entries(&sheet.patch) {
         check_patch(patch, sheet, &key, checks);
     }
@@ -32,7 +32,7 @@ pub(crate) fn check(sheet: &Sheet, key: &Key, checks: &mut Checks) {
     }
 }
 
-fn check_patch(patch: &Patch, sheet: &Sheet, key: &Key, checks: &mut Checks) {
+fn check_patch(patch: &Patch, sheet: &SheetKey, key: &Key, checks: &mut Checks) {
     let before = checks.problems.len();
     patch.material.check(&key.name("material"), checks);
     let density = patch.density;
@@ -70,10 +70,10 @@ fn check_patch(patch: &Patch, sheet: &Sheet, key: &Key, checks: &mut Checks) {
 
 /// A sheet in its place, and what its patches are as sheets.
 pub(crate) fn patched(
-    sheet: &Sheet,
+    sheet: &SheetKey,
     place: &InPlace<'_>,
     key: &Key,
-) -> Result<Patched<Sheet>, Problem> {
+) -> Result<Patched<SheetKey>, Problem> {
     let mut all = Patched::everywhere(sheet.clone());
     for (key, patch) in key.name("patch").entries(&sheet.patch) {
         let at = key.name("at");

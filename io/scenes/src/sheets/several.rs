@@ -1,7 +1,7 @@
 //! One sheet, or several.
 
 use crate::sheets::patched;
-use crate::sheets::sheet::Sheet;
+use crate::sheets::sheet::SheetKey;
 use crate::sheets::size;
 use crate::words::key::Key;
 use crate::words::part::{Place, See, SeeMut};
@@ -19,32 +19,32 @@ use std::fmt;
 #[expect(dead_code, reason = "the form of the schema, which has no values")]
 pub(crate) enum OneOrSeveral {
     /// The sheet.
-    One(Box<Sheet>),
+    One(Box<SheetKey>),
     /// The sheets.
-    Several(Vec<Sheet>),
+    Several(Vec<SheetKey>),
 }
 
-pub(crate) fn serialize<S: Serializer>(sheets: &[Sheet], to: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<S: Serializer>(sheets: &[SheetKey], to: S) -> Result<S::Ok, S::Error> {
     match sheets {
         [sheet] => sheet.serialize(to),
         sheets => sheets.serialize(to),
     }
 }
 
-pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Sheet>, D::Error> {
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<SheetKey>, D::Error> {
     struct Either;
     impl<'de> Visitor<'de> for Either {
-        type Value = Vec<Sheet>;
+        type Value = Vec<SheetKey>;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
             f.write_str("a table, or a list of tables")
         }
 
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Vec<Sheet>, A::Error> {
-            Sheet::deserialize(MapAccessDeserializer::new(map)).map(|sheet| vec![sheet])
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Vec<SheetKey>, A::Error> {
+            SheetKey::deserialize(MapAccessDeserializer::new(map)).map(|sheet| vec![sheet])
         }
 
-        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Vec<Sheet>, A::Error> {
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Vec<SheetKey>, A::Error> {
             Vec::deserialize(SeqAccessDeserializer::new(list))
         }
     }
@@ -52,7 +52,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Shee
 }
 
 /// Shows the sheets.
-pub(crate) fn shared<'a>(sheets: &'a [Sheet], at: impl FnOnce() -> Place, see: See<'_, 'a>) {
+pub(crate) fn shared<'a>(sheets: &'a [SheetKey], at: impl FnOnce() -> Place, see: See<'_, 'a>) {
     let (at, count) = (at(), sheets.len());
     for (k, sheet) in sheets.iter().enumerate() {
         see(place(&at, count, k), sheet);
@@ -61,7 +61,7 @@ pub(crate) fn shared<'a>(sheets: &'a [Sheet], at: impl FnOnce() -> Place, see: S
 
 /// Shows the sheets so that they can be changed.
 pub(crate) fn mutable<'a>(
-    sheets: &'a mut [Sheet],
+    sheets: &'a mut [SheetKey],
     at: impl FnOnce() -> Place,
     see: SeeMut<'_, 'a>,
 ) {
@@ -85,7 +85,7 @@ pub(crate) fn sheet_key(count: usize, number: usize) -> Key {
 }
 
 /// Checks the sheets.
-pub(crate) fn check(sheets: &[Sheet], checks: &mut Checks) {
+pub(crate) fn check(sheets: &[SheetKey], checks: &mut Checks) {
     let root = Key::root().name("sheet");
     if sheets.is_empty() {
         checks.report(root, "the scene has no sheet", "write a table `[sheet]`");
@@ -107,7 +107,7 @@ pub(crate) fn check(sheets: &[Sheet], checks: &mut Checks) {
     }
 }
 
-fn check_name(sheets: &[Sheet], k: usize, key: &Key, checks: &mut Checks) {
+fn check_name(sheets: &[SheetKey], k: usize, key: &Key, checks: &mut Checks) {
     let remedy = "give each of several sheets a name of its own, `name = \"cover\"`";
     match &sheets[k].name {
         None => checks.report(key.clone(), "the sheet has no name", remedy),
@@ -124,7 +124,7 @@ fn check_name(sheets: &[Sheet], k: usize, key: &Key, checks: &mut Checks) {
 
 /// Reports a name that no sheet has.
 pub(crate) fn check_reference(
-    sheets: &[Sheet],
+    sheets: &[SheetKey],
     name: Option<&str>,
     key: &Key,
     checks: &mut Checks,
@@ -136,7 +136,7 @@ pub(crate) fn check_reference(
 
 /// The number of the sheet of the given name; of no name, if there is one sheet only.
 pub(crate) fn number_of<'a>(
-    sheets: impl IntoIterator<Item = &'a Sheet>,
+    sheets: impl IntoIterator<Item = &'a SheetKey>,
     name: Option<&str>,
     key: &Key,
 ) -> Result<Option<usize>, Problem> {
@@ -172,7 +172,7 @@ pub(crate) fn unknown_name(
 
 /// The number of the sheet that is meant, which has to be said if there are several.
 pub(crate) fn one_of<'a>(
-    sheets: impl IntoIterator<Item = &'a Sheet>,
+    sheets: impl IntoIterator<Item = &'a SheetKey>,
     name: Option<&str>,
     key: &Key,
     what: &str,

@@ -2,13 +2,13 @@
 
 use crate::meshes::direction::Direction;
 use crate::meshes::mesh::Mesh;
-use crate::sheets::curl::Curl;
-use crate::sheets::material::{Material, ratios, typical_poisson};
+use crate::sheets::curl::CurlKey;
+use crate::sheets::material::{MaterialKey, ratios, typical_poisson};
 use crate::sheets::patch::Patch;
-use crate::sheets::start::Start;
+use crate::sheets::start::StartKey;
 use crate::sheets::yields::SheetYield;
 use crate::time::pose::Pose;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
-pub struct Sheet {
+pub struct SheetKey {
     /// Its name, which each of several sheets has to have.
     #[serde(default)]
     pub name: Option<String>,
@@ -45,7 +45,7 @@ pub struct Sheet {
     pub refine: usize,
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
-    pub material: Option<Material>,
+    pub material: Option<MaterialKey>,
     /// The direction of the material: along the machine of paper, along the warp of cloth, along the fibres
     /// of a laminate. A vector in the frame of the mesh, of any length, or a texture coordinate of the mesh
     /// file. A material that has two directions is stiffer along this one than across; without the key it is
@@ -66,7 +66,7 @@ pub struct Sheet {
     pub thickness: f64,
     /// What keeps the lengths. If left out, the elasticity of the material; without one rigid rods.
     #[serde(default)]
-    pub isometry: Option<Isometry>,
+    pub isometry: Option<IsometryKey>,
     /// What resists bending. If left out, a plate of the rigidity of the material; without one nothing.
     #[serde(default)]
     pub bending: Option<Bending>,
@@ -75,17 +75,17 @@ pub struct Sheet {
     pub rest: RestShape,
     /// The curvature that it has by itself. If left out, none.
     #[serde(default)]
-    pub curl: Option<Curl>,
+    pub curl: Option<CurlKey>,
     /// The part by which all its lengths grow by themselves, a function of time from -0.2 to 0.2: negative
     /// for paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
     #[serde(default)]
     #[unit(Factor)]
-    pub swell: Option<Profile>,
+    pub swell: Option<ProfileKey>,
     /// The factor of its resistance to bending, a function of time above 0: paper whose glue dries, film that
     /// is heated. If left out, it stays.
     #[serde(default)]
     #[unit(Factor)]
-    pub stiffening: Option<Profile>,
+    pub stiffening: Option<ProfileKey>,
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
     pub yields: Option<SheetYield>,
@@ -101,7 +101,7 @@ pub struct Sheet {
     pub placement: Pose,
     /// How the sheet starts, if not at rest in its rest shape.
     #[serde(default)]
-    pub start: Start,
+    pub start: StartKey,
 }
 
 /// Mass of a square metre of office paper, kg/m2: that of sheets of which nothing is said.
@@ -125,7 +125,7 @@ pub struct Elasticity {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Isometry {
+pub enum IsometryKey {
     /// Rigid rods along all edges: exact lengths, folds along the lines of the mesh alone.
     #[default]
     Rods,
@@ -221,7 +221,7 @@ pub enum Bending {
     },
 }
 
-impl Sheet {
+impl SheetKey {
     /// A sheet of office paper without bending stiffness, of rigid rods.
     pub fn new(mesh: Mesh) -> Self {
         Self {
@@ -243,14 +243,14 @@ impl Sheet {
             patch: Vec::new(),
             damping: 0.0,
             placement: Pose::default(),
-            start: Start::default(),
+            start: StartKey::default(),
         }
     }
 
     /// The numbers of the material, if the sheet has one that is known; the means of both directions where it
     /// names one.
     pub(crate) fn made_of(&self) -> Option<engine::Material> {
-        let material = self.material.as_ref().and_then(Material::numbers)?;
+        let material = self.material.as_ref().and_then(MaterialKey::numbers)?;
         Some(match self.direction {
             Some(_) => material.directed(),
             None => material,
@@ -267,8 +267,8 @@ impl Sheet {
                 .or_else(|| self.direction.clone()),
             density: patch.density,
             isometry: match self.isometry() {
-                Isometry::Rods => Some(Isometry::Rods),
-                Isometry::Elastic { .. } => None,
+                IsometryKey::Rods => Some(IsometryKey::Rods),
+                IsometryKey::Elastic { .. } => None,
             },
             bending: None,
             patch: Vec::new(),
@@ -299,17 +299,17 @@ impl Sheet {
     /// The numbers across the direction that are written for the elasticity in the plane.
     fn written_across(&self) -> Option<[f64; 2]> {
         match self.isometry {
-            Some(Isometry::Elastic { across, shear, .. }) => Some([across?, shear?]),
+            Some(IsometryKey::Elastic { across, shear, .. }) => Some([across?, shear?]),
             _ => None,
         }
     }
 
     /// What keeps the lengths: as written, or what follows from the material.
-    pub fn isometry(&self) -> Isometry {
+    pub fn isometry(&self) -> IsometryKey {
         match (&self.isometry, &self.material) {
             (Some(isometry), _) => isometry.clone(),
-            (None, Some(_)) => Isometry::ELASTIC,
-            (None, None) => Isometry::Rods,
+            (None, Some(_)) => IsometryKey::ELASTIC,
+            (None, None) => IsometryKey::Rods,
         }
     }
 
@@ -328,7 +328,7 @@ impl Sheet {
     /// Poisson's ratio: as written for the elasticity in the plane, of the material, or a typical one.
     fn poisson(&self) -> f64 {
         let written = match self.isometry {
-            Some(Isometry::Elastic { poisson, .. }) => poisson,
+            Some(IsometryKey::Elastic { poisson, .. }) => poisson,
             _ => None,
         };
         let given = written.or(self.made_of().map(|m| m.poisson));
@@ -393,7 +393,7 @@ impl Sheet {
     /// The numbers of an elastic sheet: as written, of the material, or defaults. `None` of other sheets, and
     /// without a stiffness.
     pub fn elasticity(&self) -> Option<Elasticity> {
-        let Isometry::Elastic {
+        let IsometryKey::Elastic {
             stiffness,
             poisson,
             limit,
@@ -453,7 +453,7 @@ impl Sheet {
             _ => None,
         };
         let across = match self.isometry {
-            Some(Isometry::Elastic { across, shear, .. }) => [across, shear],
+            Some(IsometryKey::Elastic { across, shear, .. }) => [across, shear],
             _ => [None; 2],
         };
         let elastic = key.name("isometry.elastic");
@@ -465,7 +465,7 @@ impl Sheet {
         if is_written
             && matches!(
                 self.isometry,
-                Some(Isometry::Elastic {
+                Some(IsometryKey::Elastic {
                     stiffness: None,
                     ..
                 })
@@ -487,7 +487,7 @@ impl Sheet {
             if self
                 .material
                 .as_ref()
-                .is_some_and(Material::needs_direction)
+                .is_some_and(MaterialKey::needs_direction)
             {
                 let message = "the material is stiffer along a direction, and the sheet has none";
                 checks.report(key.name("material"), message, remedy);
@@ -560,7 +560,7 @@ impl Sheet {
                     checks.within(key.clone(), part, engine::ElasticSheet::SWELLING);
                 }
             }
-            if isometry == Isometry::Rods {
+            if isometry == IsometryKey::Rods {
                 checks.report(
                     key,
                     "the sheet swells or shrinks, and it is of rigid rods, which keep their lengths",
@@ -587,7 +587,7 @@ impl Sheet {
                 "give `sheet.bending`, or `sheet.material`",
             );
         }
-        let is_elastic = matches!(isometry, Isometry::Elastic { .. });
+        let is_elastic = matches!(isometry, IsometryKey::Elastic { .. });
         if is_elastic && self.material.is_none() && self.elasticity().is_none() {
             checks.report(
                 key.name("isometry.elastic"),
@@ -605,7 +605,7 @@ const PLATE: &str = "give `sheet.bending` as a `plate`, or `sheet.material`";
 /// an edge has no length.
 const LIMITS: [f64; 2] = [1e-6, 0.49];
 
-impl Isometry {
+impl IsometryKey {
     /// Elastic, with the numbers of the material.
     pub const ELASTIC: Self = Self::Elastic {
         stiffness: None,

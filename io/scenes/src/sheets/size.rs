@@ -1,7 +1,7 @@
 //! How large the mesh of a scene is, before it is made.
 
 use crate::meshes::mesh::Mesh;
-use crate::sheets::sheet::Sheet;
+use crate::sheets::sheet::SheetKey;
 use crate::words::key::Key;
 use crate::words::problem::Problem;
 use isosheet_files::{bytes_in_words, memory};
@@ -32,7 +32,7 @@ pub(crate) fn check_memory(faces: f64, key: Key) -> Result<(), Problem> {
 
 /// Refuses sheets of a scene that memory cannot hold together, as far as their numbers of faces are known
 /// before they are made; `key` is that of a sheet by its number.
-pub(crate) fn check_sheets(sheets: &[Sheet], key: impl Fn(usize) -> Key) -> Result<(), Problem> {
+pub(crate) fn check_sheets(sheets: &[SheetKey], key: impl Fn(usize) -> Key) -> Result<(), Problem> {
     let mut all = 0.0;
     for (k, sheet) in sheets.iter().enumerate() {
         let key = key(k);

@@ -1,6 +1,6 @@
 //! How a sheet starts.
 
-use crate::meshes::mesh_file::MeshFile;
+use crate::meshes::mesh_file::MeshFileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -18,11 +18,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 #[checked]
-pub struct Start {
+pub struct StartKey {
     /// A mesh file with the vertices and faces of `mesh` in the same order, whose positions are those at the
     /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
     /// by up to 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
-    pub file: Option<MeshFile>,
+    pub file: Option<MeshFileKey>,
     /// The positions at the start as a list: those of the vertices of `mesh`, in its order, metres.
     pub positions: Option<Vec<[f64; 3]>>,
     /// Velocities of the vertices of `mesh` in space, in its order, m/s, beside `velocity` and `spin`.
@@ -58,7 +58,7 @@ pub struct Spin {
     pub centre: Option<[f64; 3]>,
 }
 
-impl Start {
+impl StartKey {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let size = key.name("perturbation");
         checks.within(size, self.perturbation, [0.0, 1.0]);

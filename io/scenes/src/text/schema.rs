@@ -15,7 +15,35 @@ pub fn schema() -> Value {
 pub fn documented_schema() -> Value {
     let mut schema = schemars::schema_for!(Scene).to_value();
     schema["title"] = "A scene of isosheet".into();
+    name_parts_plainly(&mut schema);
     schema
+}
+
+/// What the name of a type that is the value of a key ends with: no other type is called so, while a part of
+/// a schema is alone with its name.
+const OF_KEY: &str = "Key";
+
+/// Names the parts of a schema without [`OF_KEY`].
+fn name_parts_plainly(schema: &mut Value) {
+    match schema {
+        Value::Object(entries) => {
+            if let Some(Value::String(of)) = entries.get_mut("$ref") {
+                *of = plain(of).to_owned();
+            }
+            if let Some(Value::Object(parts)) = entries.get_mut("$defs") {
+                let named = std::mem::take(parts).into_iter();
+                parts.extend(named.map(|(name, part)| (plain(&name).to_owned(), part)));
+            }
+            entries.values_mut().for_each(name_parts_plainly);
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(name_parts_plainly),
+        _ => {}
+    }
+}
+
+/// A name without [`OF_KEY`].
+fn plain(name: &str) -> &str {
+    name.strip_suffix(OF_KEY).unwrap_or(name)
 }
 
 /// How an example begins in a description.

@@ -1,6 +1,6 @@
 //! Motions that a program leads, in a simulation that is under way.
 
-use crate::time::pose::Motion;
+use crate::time::pose::MotionKey;
 use crate::words::key::Key;
 use isosheet_dynamics::{Led, PointMotion, RigidMotion};
 use nalgebra::Isometry3;
@@ -22,7 +22,7 @@ impl LedMotion {
     }
 
     /// Goes on with another motion, which is where this one is now.
-    pub(crate) fn lead(&self, motion: &Motion) {
+    pub(crate) fn lead(&self, motion: &MotionKey) {
         for (body, led) in &self.bodies {
             led.lead(motion.of_body(*body));
         }
@@ -60,7 +60,7 @@ impl LedMotions {
     pub(crate) fn of_body(
         &mut self,
         key: &Key,
-        motion: &Motion,
+        motion: &MotionKey,
         pose: Isometry3<f64>,
     ) -> RigidMotion {
         let now = RigidMotion::from(motion.of_body(pose));
@@ -75,7 +75,7 @@ impl LedMotions {
     }
 
     /// The motion of a pinned vertex at a place (metres), as the engine has it.
-    pub(crate) fn of_pin(&mut self, key: &Key, motion: &Motion, place: [f64; 3]) -> PointMotion {
+    pub(crate) fn of_pin(&mut self, key: &Key, motion: &MotionKey, place: [f64; 3]) -> PointMotion {
         let now = motion.of_pin(place);
         match self.find(key) {
             None => now,

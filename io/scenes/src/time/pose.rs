@@ -1,7 +1,7 @@
 //! Where things are and how they move.
 
 use crate::time::poses::{FramePose, Poses, TimedPose};
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::Checks;
@@ -106,16 +106,16 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(default, deny_unknown_fields)]
 #[checked]
-pub struct Motion {
+pub struct MotionKey {
     /// Displacement along x, metres.
     #[unit(Metre)]
-    pub x: Profile,
+    pub x: ProfileKey,
     /// Displacement along y, metres.
     #[unit(Metre)]
-    pub y: Profile,
+    pub y: ProfileKey,
     /// Displacement along z, metres.
     #[unit(Metre)]
-    pub z: Profile,
+    pub z: ProfileKey,
     /// The rotation, if there is one.
     pub rotation: Option<Rotation>,
     /// Poses in place of displacements and rotation.
@@ -141,10 +141,10 @@ pub struct Rotation {
     pub axis: [f64; 3],
     /// Angle, degrees.
     #[unit(Degree)]
-    pub angle: Profile,
+    pub angle: ProfileKey,
 }
 
-impl Motion {
+impl MotionKey {
     /// The motion of a body that is in a pose while displacements and angle are zero.
     pub(crate) fn of_body(&self, pose: Isometry3<f64>) -> RigidProfile {
         if let Some(poses) = &self.poses {

@@ -28,7 +28,7 @@ use std::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Profile {
+pub enum ProfileKey {
     /// One value at all times.
     Constant(f64),
     /// A value that changes.
@@ -79,7 +79,7 @@ pub enum Course {
     Keyframes {
         /// The course between keyframes.
         #[serde(default)]
-        interpolation: Interpolation,
+        interpolation: InterpolationKey,
         /// Pairs of time (seconds) and value, in the order of time.
         keys: Vec<[f64; 2]>,
         /// The times at which the rate really jumps, seconds: there the method begins anew. If left out, at
@@ -115,7 +115,7 @@ pub struct Change {
 /// The course between keyframes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Interpolation {
+pub enum InterpolationKey {
     /// Straight lines.
     #[default]
     Linear,
@@ -123,7 +123,7 @@ pub enum Interpolation {
     MonotoneCubic,
 }
 
-impl Part for Profile {
+impl Part for ProfileKey {
     fn check_own(&self, at: &Place, checks: &mut Checks) {
         let unit = at
             .unit
@@ -132,20 +132,20 @@ impl Part for Profile {
     }
 }
 
-impl Default for Profile {
+impl Default for ProfileKey {
     /// Zero at all times.
     fn default() -> Self {
         Self::Constant(0.0)
     }
 }
 
-impl From<f64> for Profile {
+impl From<f64> for ProfileKey {
     fn from(value: f64) -> Self {
         Self::Constant(value)
     }
 }
 
-impl Profile {
+impl ProfileKey {
     /// From zero at the time zero smoothly to `value` at the time `end` (seconds).
     pub fn smooth_step(value: f64, end: f64) -> Self {
         Self::Course(Course::SmoothStep(Change {
@@ -221,8 +221,8 @@ impl Profile {
                 ..
             } => engine::Profile::Keyframes {
                 interpolation: match interpolation {
-                    Interpolation::Linear => engine::Interpolation::Linear,
-                    Interpolation::MonotoneCubic => engine::Interpolation::MonotoneCubic,
+                    InterpolationKey::Linear => engine::Interpolation::Linear,
+                    InterpolationKey::MonotoneCubic => engine::Interpolation::MonotoneCubic,
                 },
                 keys: keys.iter().map(|[t, value]| [*t, scale * value]).collect(),
             },
@@ -318,7 +318,7 @@ impl Profile {
     }
 }
 
-impl<'de> Deserialize<'de> for Profile {
+impl<'de> Deserialize<'de> for ProfileKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ProfileVisitor)
     }
@@ -327,7 +327,7 @@ impl<'de> Deserialize<'de> for Profile {
 struct ProfileVisitor;
 
 impl<'de> Visitor<'de> for ProfileVisitor {
-    type Value = Profile;
+    type Value = ProfileKey;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
@@ -335,19 +335,19 @@ impl<'de> Visitor<'de> for ProfileVisitor {
         )
     }
 
-    fn visit_f64<E>(self, value: f64) -> Result<Profile, E> {
-        Ok(Profile::Constant(value))
+    fn visit_f64<E>(self, value: f64) -> Result<ProfileKey, E> {
+        Ok(ProfileKey::Constant(value))
     }
 
-    fn visit_i64<E>(self, value: i64) -> Result<Profile, E> {
-        Ok(Profile::Constant(value as f64))
+    fn visit_i64<E>(self, value: i64) -> Result<ProfileKey, E> {
+        Ok(ProfileKey::Constant(value as f64))
     }
 
-    fn visit_u64<E>(self, value: u64) -> Result<Profile, E> {
-        Ok(Profile::Constant(value as f64))
+    fn visit_u64<E>(self, value: u64) -> Result<ProfileKey, E> {
+        Ok(ProfileKey::Constant(value as f64))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Profile, A::Error> {
-        Course::deserialize(MapAccessDeserializer::new(map)).map(Profile::Course)
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ProfileKey, A::Error> {
+        Course::deserialize(MapAccessDeserializer::new(map)).map(ProfileKey::Course)
     }
 }

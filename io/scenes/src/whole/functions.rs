@@ -1,8 +1,8 @@
 //! The functions of time of a scene, and the motions that are made of them.
 
-use crate::time::pose::Motion;
+use crate::time::pose::MotionKey;
 use crate::time::poses::Poses;
-use crate::time::profile::Profile;
+use crate::time::profile::ProfileKey;
 use crate::words::key::{Key, KeyPart};
 use crate::words::part::{all, all_mut};
 use crate::{AnyPart, Place, Scene, Unit};
@@ -14,7 +14,7 @@ pub struct Function<'a> {
     /// The place of the function in the scene.
     pub key: Key,
     /// The function.
-    pub profile: &'a Profile,
+    pub profile: &'a ProfileKey,
     /// The unit of its values, as it is written behind a number.
     pub unit: &'static str,
 }
@@ -24,7 +24,7 @@ pub struct Moved<'a> {
     /// The place of the motion in the scene.
     pub key: Key,
     /// The motion.
-    pub motion: &'a mut Motion,
+    pub motion: &'a mut MotionKey,
     /// The frame of what moves while it is not displaced: that of an obstacle, and that of space of a
     /// support.
     pub(crate) frame: Isometry3<f64>,
@@ -43,7 +43,7 @@ impl Scene {
     }
 
     /// All functions of time with their keys, so that they can be changed.
-    pub fn functions_mut(&mut self) -> Vec<(Key, &mut Profile)> {
+    pub fn functions_mut(&mut self) -> Vec<(Key, &mut ProfileKey)> {
         let functions = all_mut(self, Key::root()).into_iter();
         functions.map(|(at, profile)| (at.key, profile)).collect()
     }
@@ -72,7 +72,7 @@ impl Scene {
     }
 }
 
-impl Motion {
+impl MotionKey {
     /// The times at which the velocity or the acceleration jumps, seconds.
     pub fn breaks(&self) -> Vec<f64> {
         breaks(self)
@@ -81,7 +81,7 @@ impl Motion {
 
 /// When functions of time and poses in a part of a scene change abruptly, seconds.
 fn breaks(part: &AnyPart) -> Vec<f64> {
-    let functions = all::<Profile>(part, Key::root()).into_iter();
+    let functions = all::<ProfileKey>(part, Key::root()).into_iter();
     let poses = all::<Poses>(part, Key::root()).into_iter();
     let of_functions = functions.flat_map(|(_, function)| function.breaks());
     let of_poses = poses.flat_map(|(_, poses)| poses.breaks());

@@ -1,7 +1,8 @@
 //! Functions of time that change faster than the steps of a run, at whose ends alone they are taken.
 
 use crate::{
-    Checks, Course, Function, Interpolation, Key, KeyPart, Motion, Moved, Poses, Profile, Scene,
+    Checks, Course, Function, InterpolationKey, Key, KeyPart, MotionKey, Moved, Poses, ProfileKey,
+    Scene,
 };
 use isosheet_mesh::wording::brief;
 use nalgebra::{Quaternion, UnitQuaternion};
@@ -17,7 +18,7 @@ const TURNED_BACK: f64 = 0.25;
 const TURNED: f64 = 180.0;
 
 /// Functions that are the components of one vector, or one function.
-type Group = Vec<(Key, Profile)>;
+type Group = Vec<(Key, ProfileKey)>;
 
 impl Scene {
     /// Functions of time do not turn back within a step, and nothing turns too far in one.
@@ -101,7 +102,7 @@ fn positions(key: &Key, poses: &Poses) -> Group {
 }
 
 /// The angle of a motion by time, degrees; of poses the sum of all turns, forth and back.
-fn angle(key: &Key, motion: &Motion) -> Option<(Key, Profile)> {
+fn angle(key: &Key, motion: &MotionKey) -> Option<(Key, ProfileKey)> {
     let Some(poses) = &motion.poses else {
         let angle = motion.rotation.as_ref()?.angle.clone();
         return Some((key.name("rotation.angle"), angle));
@@ -117,9 +118,9 @@ fn angle(key: &Key, motion: &Motion) -> Option<(Key, Profile)> {
     Some((key.name("poses.keys"), keyframes(turns.collect())))
 }
 
-fn keyframes(keys: Vec<[f64; 2]>) -> Profile {
-    Profile::Course(Course::Keyframes {
-        interpolation: Interpolation::Linear,
+fn keyframes(keys: Vec<[f64; 2]>) -> ProfileKey {
+    ProfileKey::Course(Course::Keyframes {
+        interpolation: InterpolationKey::Linear,
         keys,
         kinks: None,
     })
@@ -127,8 +128,8 @@ fn keyframes(keys: Vec<[f64; 2]>) -> Profile {
 
 /// Which function of a group turns back too far in a step of `h` seconds, in which step (the time at its
 /// beginning), and how far.
-fn turned_back(group: &[(Key, Profile)], h: f64, until: f64) -> Option<(&Key, f64, f64)> {
-    let width = |(_, f): &(Key, Profile)| {
+fn turned_back(group: &[(Key, ProfileKey)], h: f64, until: f64) -> Option<(&Key, f64, f64)> {
+    let width = |(_, f): &(Key, ProfileKey)| {
         let [low, high] = f.range(until);
         high - low
     };
@@ -140,9 +141,9 @@ fn turned_back(group: &[(Key, Profile)], h: f64, until: f64) -> Option<(&Key, f6
 }
 
 /// The step of `h` seconds in which a function goes farthest beyond its values at both ends, and how far.
-fn farthest_beyond(function: &Profile, h: f64, until: f64) -> Option<(f64, f64)> {
+fn farthest_beyond(function: &ProfileKey, h: f64, until: f64) -> Option<(f64, f64)> {
     match function {
-        Profile::Course(Course::Sine {
+        ProfileKey::Course(Course::Sine {
             amplitude,
             frequency,
             ..
@@ -151,7 +152,7 @@ fn farthest_beyond(function: &Profile, h: f64, until: f64) -> Option<(f64, f64)>
             let phase = PI * (frequency.abs() * h).min(1.0);
             Some((0.0, amplitude.abs() * (1.0 - phase.cos())))
         }
-        Profile::Course(Course::Keyframes { keys, .. }) => {
+        ProfileKey::Course(Course::Keyframes { keys, .. }) => {
             let beyond = |[time, value]: &[f64; 2]| {
                 let start = (time / h).floor() * h;
                 let ends = [start, start + h].map(|t| function.value(t));
@@ -166,8 +167,8 @@ fn farthest_beyond(function: &Profile, h: f64, until: f64) -> Option<(f64, f64)>
 }
 
 /// The largest change of a function in `h` seconds; of a sine in any part of them, as it may be back.
-fn largest_change(function: &Profile, h: f64) -> f64 {
-    let Profile::Course(course) = function else {
+fn largest_change(function: &ProfileKey, h: f64) -> f64 {
+    let ProfileKey::Course(course) = function else {
         return 0.0;
     };
     match course {
@@ -195,8 +196,8 @@ fn largest_change(function: &Profile, h: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn sine(frequency: f64) -> Profile {
-        Profile::Course(Course::Sine {
+    fn sine(frequency: f64) -> ProfileKey {
+        ProfileKey::Course(Course::Sine {
             mean: 1.0,
             amplitude: 2.0,
             frequency,
@@ -204,7 +205,7 @@ mod tests {
         })
     }
 
-    fn one(function: Profile) -> Group {
+    fn one(function: ProfileKey) -> Group {
         vec![(Key::root(), function)]
     }
 
@@ -260,8 +261,8 @@ mod tests {
             end: 0.4,
         };
         let functions = [
-            Profile::Course(Course::Ramp(change.clone())),
-            Profile::Course(Course::SmoothStep(change)),
+            ProfileKey::Course(Course::Ramp(change.clone())),
+            ProfileKey::Course(Course::SmoothStep(change)),
             sine(3.0),
             keyframes(vec![[0.0, 0.0], [0.1, 5.0], [0.15, -3.0], [0.4, 2.0]]),
         ];

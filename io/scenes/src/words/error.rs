@@ -132,7 +132,7 @@ pub struct PlacedProblem {
 
 /// Whether messages are coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colours {
+pub enum MessageStyle {
     /// For files and pipes.
     Plain,
     /// For terminals.
@@ -197,14 +197,14 @@ impl SceneError {
     }
 
     /// The message.
-    pub fn render(&self, colours: Colours) -> String {
+    pub fn render(&self, colours: MessageStyle) -> String {
         let Some(SceneText { path, text }) = &self.text else {
             let lines: Vec<String> = self.problems.iter().map(without_place).collect();
             return lines.join("\n");
         };
         let renderer = match colours {
-            Colours::Plain => Renderer::plain(),
-            Colours::Terminal => Renderer::styled(),
+            MessageStyle::Plain => Renderer::plain(),
+            MessageStyle::Terminal => Renderer::styled(),
         };
         let mut shown = Vec::new();
         for problem in &self.problems {
@@ -254,7 +254,7 @@ impl From<Problem> for SceneError {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.render(Colours::Plain))
+        f.write_str(&self.render(MessageStyle::Plain))
     }
 }
 

@@ -167,7 +167,7 @@ made_of! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{MeshFile, Profile, Selection};
+    use crate::{MeshFileKey, ProfileKey, Selection};
 
     /// A key of each kind, such as somebody adds to a scene.
     #[derive(Part)]
@@ -176,7 +176,7 @@ mod tests {
         at: Selection,
         #[serde(rename = "static")]
         #[unit(Newton)]
-        size: Option<Profile>,
+        size: Option<ProfileKey>,
         ends: Vec<End>,
         sheet: Option<String>,
         rate: f64,
@@ -185,10 +185,10 @@ mod tests {
     #[derive(Part)]
     enum End {
         Free,
-        OnFile(MeshFile),
+        OnFile(MeshFileKey),
         AtRest {
             #[unit(Metre)]
-            place: [Profile; 2],
+            place: [ProfileKey; 2],
         },
     }
 
@@ -205,9 +205,9 @@ mod tests {
             ends: vec![
                 End::Free,
                 End::AtRest {
-                    place: [1.0, 2.0].map(Profile::from),
+                    place: [1.0, 2.0].map(ProfileKey::from),
                 },
-                End::OnFile(MeshFile::new("end.obj")),
+                End::OnFile(MeshFileKey::new("end.obj")),
             ],
             sheet: Some("cover".into()),
             rate: -1.0,
@@ -231,13 +231,13 @@ mod tests {
             "ends[1].at_rest.place[1]",
         ];
         assert_eq!(
-            keys::<Profile>(&spring),
+            keys::<ProfileKey>(&spring),
             functions.map(|key| format!("spring[0].{key}"))
         );
-        let units = all::<Profile>(&spring, Key::root()).into_iter();
+        let units = all::<ProfileKey>(&spring, Key::root()).into_iter();
         let units: Vec<_> = units.map(|(at, _)| at.unit).collect();
         assert_eq!(units, [Unit::Newton, Unit::Metre, Unit::Metre].map(Some));
-        for (_, function) in all_mut::<Profile>(&mut spring, Key::root()) {
+        for (_, function) in all_mut::<ProfileKey>(&mut spring, Key::root()) {
             *function = 3.0.into();
         }
         assert_eq!(spring.size, Some(3.0.into()));

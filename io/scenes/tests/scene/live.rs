@@ -3,7 +3,9 @@
 use crate::parse;
 use isosheet_dynamics::{Checkpoint, StepError};
 use isosheet_mesh::VertexId;
-use isosheet_scenes::{Edit, HoldError, Key, LiveScene, Mesh, Profile, SceneFile, SceneFileError};
+use isosheet_scenes::{
+    Edit, HoldError, Key, LiveScene, Mesh, ProfileKey, SceneFile, SceneFileError,
+};
 use std::path::Path;
 
 /// A square that hangs by a corner, which can be moved, and has a crease along its middle line and a load.
@@ -350,7 +352,7 @@ fn the_text_of_a_changed_scene_is_that_of_the_scene() {
     let text = &changed.text().text;
     assert!(text.contains("[forces] # on earth"), "{text}");
     assert_eq!(parse(text).expect("a scene").scene(), changed.scene());
-    let Profile::Course(course) = &changed.scene().air.as_ref().expect("air").wind[1] else {
+    let ProfileKey::Course(course) = &changed.scene().air.as_ref().expect("air").wind[1] else {
         panic!("{text}");
     };
     assert!(format!("{course:?}").contains("to: 3.0"), "{course:?}");

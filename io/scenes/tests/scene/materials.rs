@@ -2,7 +2,7 @@
 
 use crate::parse;
 use isosheet_dynamics::{self as dynamics, Potential};
-use isosheet_scenes::{Bending, Elasticity, Isometry, Material, Plate, Scene, SceneFile};
+use isosheet_scenes::{Bending, Elasticity, IsometryKey, MaterialKey, Plate, Scene, SceneFile};
 use std::path::Path;
 
 /// A sheet of 0.02 m2 with some lines.
@@ -36,7 +36,7 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
         }
     );
     assert_eq!(scene.plate(), Some((&paper).into()));
-    assert_eq!(scene.isometry(), Isometry::ELASTIC);
+    assert_eq!(scene.isometry(), IsometryKey::ELASTIC);
     let numbers = Elasticity {
         law: paper.membrane(None),
         limit: paper.strain_limit,
@@ -83,7 +83,7 @@ fn a_plate_has_the_poissons_ratio_of_its_sheet() {
 #[test]
 fn without_a_material_a_sheet_is_one_of_rods() {
     let scene = sheet("").sheet.remove(0);
-    assert_eq!(scene.isometry(), Isometry::Rods);
+    assert_eq!(scene.isometry(), IsometryKey::Rods);
     assert_eq!(scene.bending(), Bending::None);
     assert_eq!(scene.areal_density(), 0.08);
     assert_eq!(scene.elasticity(), None);
@@ -257,8 +257,8 @@ fn a_scene_with_a_material_is_written_as_it_is_read() {
         shear: Some(8e8),
         yield_stress: Some(2e7),
     };
-    for material in [Material::named("card"), Material::Plate(plate)] {
-        for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
+    for material in [MaterialKey::named("card"), MaterialKey::Plate(plate)] {
+        for isometry in [None, Some(IsometryKey::ELASTIC), Some(IsometryKey::Rods)] {
             let mut scene = sheet("");
             scene.sheet[0].material = Some(material.clone());
             scene.sheet[0].direction = Some([0.6, 0.8, 0.0].into());

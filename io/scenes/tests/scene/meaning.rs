@@ -3,9 +3,7 @@
 use crate::skip::data_folder;
 use crate::{parse, simulation};
 use isosheet_dynamics::nalgebra::Vector3;
-use isosheet_dynamics::{
-    Air, At, Method, PointProfile, Profile as EngineProfile, SheetModel, Simulation, State,
-};
+use isosheet_dynamics::{Air, At, Method, PointProfile, Profile, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, VertexId, fold_angle, generate};
 use isosheet_scenes::{Scene, SceneFile, StartingPoint};
 use std::path::Path;
@@ -27,7 +25,7 @@ fn a_scene_is_the_simulation_that_it_says() {
     let sheet = generate::isotropic_square(2, 0.21).unwrap();
     let lift = PointProfile {
         offset: sheet.position(VertexId(72)),
-        z: EngineProfile::SmoothStep {
+        z: Profile::SmoothStep {
             from: 0.0,
             to: 0.02,
             begin: 0.0,

@@ -7,7 +7,7 @@ use crate::placing::in_words::elastic_in_words;
 use crate::placing::placed::PlacedSheet;
 use crate::sheets::creases::{EdgeFolds, FoldSprings};
 use crate::sheets::folding::{FLAT_STIFFNESS, FoldTargets};
-use crate::sheets::sheet::{Bending, Elasticity, Isometry, RestShape};
+use crate::sheets::sheet::{Bending, Elasticity, IsometryKey, RestShape};
 use crate::words::error::SceneError;
 use crate::words::key::Key;
 use isosheet_dynamics::{
@@ -242,7 +242,7 @@ impl Builder<'_> {
                 let mut targets = folding.targets(&key, mesh, refined, &mut self.kept.files)?;
                 let model = self.model.as_ref().expect("it is there between changes");
                 let x = &mut self.x[own.part.coordinates()];
-                if own.of.isometry() == Isometry::Rods
+                if own.of.isometry() == IsometryKey::Rods
                     && let Some(start) = off_flat(own, model, &targets, x)
                 {
                     x.copy_from_slice(&start);

@@ -40,7 +40,7 @@ pub struct Kept {
     /// The plate of each sheet that is flat without stress and clamped by no line.
     pub(super) plates: Slots<PlateMadeOf, Arc<PlateBending>>,
     /// The shapes of the obstacles.
-    pub(super) shapes: Slots<obstacles::Shape, geometry::Shape>,
+    pub(super) shapes: Slots<obstacles::ShapeKey, geometry::Shape>,
     /// The motions that a program leads.
     pub(crate) led: Vec<Key>,
     /// Where the simulation starts, once that is known.

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Kept, at};
 use crate::bodies::obstacle_names;
-use crate::bodies::obstacles::Shape;
+use crate::bodies::obstacles::ShapeKey;
 use crate::holding::switch::Holder;
 use crate::placing::driven_surface::DrivenSurface;
 use crate::placing::placed::PlacedSheet;
@@ -105,7 +105,7 @@ impl Builder<'_> {
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);
-            if matches!(obstacle.shape, Shape::Sequence(_)) {
+            if matches!(obstacle.shape, ShapeKey::Sequence(_)) {
                 continue;
             }
             let Kept { files, shapes, .. } = &mut *self.kept;
@@ -177,7 +177,7 @@ impl Builder<'_> {
             Some(surface) => Meeting::Points(surface.part.vertices.clone()),
             None => {
                 let before = obstacles[..number].iter();
-                let rigid = before.filter(|o| !matches!(o.shape, Shape::Sequence(_)));
+                let rigid = before.filter(|o| !matches!(o.shape, ShapeKey::Sequence(_)));
                 Meeting::Body(rigid.count() as u32)
             }
         })

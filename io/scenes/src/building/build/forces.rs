@@ -5,7 +5,7 @@ use crate::sheets::several;
 use crate::words::error::SceneError;
 use crate::words::key::Key;
 use crate::words::problem::Problem;
-use crate::{Air, Frame, Selection};
+use crate::{AirKey, Frame, Selection};
 use isosheet_attached_flow::AttachedFlow;
 use isosheet_dynamics::{AccelerationField, SimulationError, TurningLoad, VertexLoad};
 use isosheet_mesh::VertexId;
@@ -59,7 +59,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn add_air(&mut self, air: &Air) -> Result<(), SceneError> {
+    fn add_air(&mut self, air: &AirKey) -> Result<(), SceneError> {
         let key = Key::root().name("air");
         let Some(attached) = &air.attached else {
             self.change(|m| m.with_air(air.as_engine()), at(&key))?;
@@ -98,7 +98,7 @@ impl Builder<'_> {
     /// Refuses a trailing edge all of which is on the windward half of the sheet at the start.
     fn check_leeward(
         &self,
-        air: &Air,
+        air: &AirKey,
         name: Option<&str>,
         [all, trailing]: [&[VertexId]; 2],
         key: &Key,

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, StartPlaces};
 use crate::placing::placed::PlacedSheet;
-use crate::sheets::sheet::{Isometry, Sheet};
+use crate::sheets::sheet::{IsometryKey, SheetKey};
 use crate::words::error::SceneError;
 use isosheet_dynamics::{State, leave_flat_in, project_positions};
 use nalgebra::Vector3;
@@ -33,7 +33,8 @@ impl Builder<'_> {
     }
 
     fn mend_lengths(&mut self) -> Result<(), SceneError> {
-        let of_file = |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.has_shape();
+        let of_file =
+            |sheet: &SheetKey| sheet.isometry() == IsometryKey::Rods && sheet.start.has_shape();
         if !self.scene.sheet.iter().any(of_file) {
             return Ok(());
         }

@@ -5,7 +5,7 @@ use crate::holding::supports::Hold;
 use crate::holding::switch::Holder;
 use crate::placing::placed::PlacedSheet;
 use crate::sheets::sheet::Bending;
-use crate::time::pose::Motion;
+use crate::time::pose::MotionKey;
 use crate::words::error::SceneError;
 use crate::words::key::Key;
 use crate::words::part::all;
@@ -23,7 +23,7 @@ impl Builder<'_> {
             let key = Key::root().name("support").entry(k);
             let name = support.sheet.as_deref();
             let mut vertices = self.sheets.vertices(name, &support.at, &key)?;
-            let motions = all::<Motion>(&support.hold, key.name("hold")).into_iter();
+            let motions = all::<MotionKey>(&support.hold, key.name("hold")).into_iter();
             let moved = motions.map(|(at, _)| at.key).next();
             let moved = moved.unwrap_or_else(|| key.name("hold"));
             if let Some(motion) = support.hold.clamp_motion() {
@@ -189,11 +189,11 @@ impl Builder<'_> {
     pub(super) fn constrain(
         &mut self,
         constraint: VertexConstraint,
-        motion: &Motion,
+        motion: &MotionKey,
         (number, moved): (usize, &Key),
     ) -> Result<(), SceneError> {
         let key = Key::root().name("support").entry(number).name("hold");
-        let constraint = match *motion != Motion::default() || self.led.has(moved) {
+        let constraint = match *motion != MotionKey::default() || self.led.has(moved) {
             false => constraint,
             true => {
                 let motion = self.led.of_body(moved, motion, Isometry3::identity());
