@@ -3,8 +3,8 @@
 //! A scene is a TOML file ([`SceneFile`]) or is put together in a program ([`Scene`]). Lengths are in metres,
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
 //!
-//! The names are those of the file, so that a scene reads in the same way in both: [`SheetKey`] is what the key
-//! `sheet` has, of which a sheet (`isosheet_mesh::Sheet`) is made. This scene is that of
+//! The names are those of the file, so that a scene reads in the same way in both: [`SheetKey`] is what the
+//! key `sheet` has, of which a sheet (`isosheet_mesh::Sheet`) is made. This scene is that of
 //! [`StartingPoint::Drape`]:
 //!
 //! ```
@@ -19,7 +19,8 @@
 //! let table = ObstacleKey::new(ShapeKey::Cylinder { radius: 0.15, height: 0.2 });
 //! let mut scene = Scene::new(cloth);
 //! scene.obstacle = vec![ObstacleKey { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3.into(), ..table }];
-//! scene.contact = ContactSettings { self_contact: true, friction: 0.3.into(), ..ContactSettings::default() };
+//! let contact = ContactSettings::default();
+//! scene.contact = ContactSettings { self_contact: true, friction: 0.3.into(), ..contact };
 //! scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 //! scene.stop.time = 1.0;
 //! # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;

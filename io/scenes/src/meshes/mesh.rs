@@ -12,7 +12,7 @@ use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
-use isosheet_formats::{DrawnEdges, FaceGroups, ReadingChanges};
+use isosheet_formats::{DrawnEdges, FaceGroups, MeshFile, ReadingChanges};
 use isosheet_mesh::generate::{FoldPattern, GenerateError};
 use isosheet_mesh::{MeshError, Sheet, generate};
 use schemars::JsonSchema;
@@ -443,7 +443,7 @@ fn read_sheet(file: &MeshFileKey, key: &Key, files: &mut Files) -> Result<RestMe
 }
 
 /// The sheet of a mesh with what is said of its edges and faces.
-fn rest_mesh(mesh: &isosheet_formats::MeshFile) -> Result<RestMesh, MeshError> {
+fn rest_mesh(mesh: &MeshFile) -> Result<RestMesh, MeshError> {
     let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let assignments = mesh.fold_assignments(sheet.topology());
     Ok(RestMesh {

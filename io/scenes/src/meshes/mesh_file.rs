@@ -9,8 +9,8 @@ use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
 use isosheet_files::input;
 use isosheet_formats::{
-    FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh, Polygons,
-    SeparateBuffers, motion_archive, parse_mesh, read_mesh_with,
+    FoldFrame, MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh,
+    Polygons, SeparateBuffers, motion_archive, parse_mesh, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
@@ -103,7 +103,7 @@ impl MeshFileKey {
     }
 
     /// Puts a mesh as the file has it in metres and with z upwards.
-    fn place(&self, mesh: &mut isosheet_formats::MeshFile) {
+    fn place(&self, mesh: &mut MeshFile) {
         for p in mesh.positions.as_chunks_mut::<3>().0 {
             *p = self.up.place(p.map(|c| self.scale * c));
         }
@@ -119,7 +119,7 @@ pub struct Files {
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
     /// The archives of meshes in motion.
     motions: BTreeMap<PathBuf, Arc<[u8]>>,
-    meshes: Vec<(MeshFileKey, Arc<isosheet_formats::MeshFile>)>,
+    meshes: Vec<(MeshFileKey, Arc<MeshFile>)>,
     sequences: Vec<(Sequence, Arc<MovingMesh>)>,
 }
 
@@ -155,11 +155,7 @@ impl Files {
     }
 
     /// The mesh of a file, in metres and with z upwards; `key` is the place of the file in the scene.
-    pub(crate) fn read(
-        &mut self,
-        file: &MeshFileKey,
-        key: &Key,
-    ) -> Result<Arc<isosheet_formats::MeshFile>, Problem> {
+    pub(crate) fn read(&mut self, file: &MeshFileKey, key: &Key) -> Result<Arc<MeshFile>, Problem> {
         self.mesh(file).map_err(|e| {
             let name = match &e.problem {
                 MeshFileProblem::Frame(_) => "frame",
@@ -198,10 +194,7 @@ impl Files {
     }
 
     /// [`Self::read`] with the error of the reader.
-    pub(crate) fn mesh(
-        &mut self,
-        file: &MeshFileKey,
-    ) -> Result<Arc<isosheet_formats::MeshFile>, MeshFileError> {
+    pub(crate) fn mesh(&mut self, file: &MeshFileKey) -> Result<Arc<MeshFile>, MeshFileError> {
         if let Some((_, mesh)) = self.meshes.iter().find(|(known, _)| known == file) {
             return Ok(mesh.clone());
         }

@@ -9,9 +9,9 @@ use isosheet_charts::{
 };
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
-    AssignmentOptions, CartesianChart, ChartError, Choice, FrontChart, RodSystem,
+    AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
 };
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Sheet, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -198,10 +198,10 @@ impl ChartKey {
     /// [`ChartError`] if there is none at these positions.
     pub fn build(
         &self,
-        sheet: &isosheet_mesh::Sheet,
+        sheet: &Sheet,
         pins: &[VertexId],
         x: &[f64],
-    ) -> Result<Box<dyn isosheet_coords::Chart>, ChartError> {
+    ) -> Result<Box<dyn Chart>, ChartError> {
         let degenerate = match self.coordinates {
             Coordinates::Cartesian => {
                 let system = RodSystem::new(sheet, pins)?;

@@ -19,8 +19,8 @@ pub fn documented_schema() -> Value {
     schema
 }
 
-/// What the name of a type that is the value of a key ends with: no other type is called so, while a part of
-/// a schema is alone with its name.
+/// The end of the names of types that are values of keys, which tells them from what is made of them. Parts
+/// of a schema need none.
 const OF_KEY: &str = "Key";
 
 /// Names the parts of a schema without [`OF_KEY`].
