@@ -9,7 +9,7 @@ use super::*;
 use crate::{Keyframe, Stiffness};
 use isosheet_dynamics::contact::BodyMotions;
 use isosheet_dynamics::contact::internals::{
-    BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+    BarrierPotential, ContactSet, ContactTerms, CouplingSink, Course, LaggedFriction,
 };
 use isosheet_geometry::{
     ContactGeometry, Form, Shape, ShapeError, SignedDistance, TriangleSurface, Triangles,
@@ -249,8 +249,13 @@ impl Step {
             friction: LaggedFriction::none(),
         };
         let active = step.active(x);
-        step.friction
-            .lag(step.contacts.laws(), &barrier, &active, [x; 2]);
+        step.friction.lag(
+            step.contacts.laws(),
+            &barrier,
+            &active,
+            Course::from_start(x, active.span().h),
+            x,
+        );
         step
     }
 
