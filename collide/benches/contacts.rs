@@ -83,7 +83,7 @@ fn pieces(
                 contacts.laws(),
                 &barrier,
                 black_box(&active),
-                Course::from_start(x, active.span().h),
+                Course::from_start(x, span.h),
                 x,
             )
         });

@@ -354,7 +354,7 @@ fn barrier_and_lagged_friction_survive_a_file() {
         contacts.laws(),
         &barrier,
         &active,
-        Course::from_start(&start.x, active.span().h),
+        Course::from_start(&start.x, span.h),
         &start.x,
     );
     assert_eq!(friction.contacts().len(), 25);

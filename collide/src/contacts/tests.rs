@@ -253,7 +253,7 @@ impl Step {
             step.contacts.laws(),
             &barrier,
             &active,
-            Course::from_start(x, active.span().h),
+            Course::from_start(x, h),
             x,
         );
         step

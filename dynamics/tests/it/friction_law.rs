@@ -357,9 +357,15 @@ fn wrong_laws_are_named() {
         other => panic!("{other:?}"),
     };
     let found = fault(&faulty(1.0, -1.0));
-    assert!(matches!(found, FrictionLawFault::Integral(part) if part > 1.9), "{found}");
+    assert!(
+        matches!(found, FrictionLawFault::Integral(part) if part > 1.9),
+        "{found}"
+    );
     let found = fault(&Steep);
-    assert!(matches!(found, FrictionLawFault::Slope(part) if (part - 0.5).abs() < 1e-6), "{found}");
+    assert!(
+        matches!(found, FrictionLawFault::Slope(part) if (part - 0.5).abs() < 1e-6),
+        "{found}"
+    );
 }
 
 /// Viscous friction whose slope is twice what it should be.

@@ -98,7 +98,7 @@ impl Scene {
             self.contacts.laws(),
             &barrier,
             &active,
-            Course::from_start(&p0, active.span().h),
+            Course::from_start(&p0, 0.02),
             &p,
         );
         (set, barrier, friction)
