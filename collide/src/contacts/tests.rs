@@ -6,7 +6,7 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Stiffness};
+use crate::{Coefficients, Keyframe, Stiffness};
 use isosheet_dynamics::contact::BodyMotions;
 use isosheet_dynamics::contact::internals::{
     BarrierPotential, ContactSet, ContactTerms, CouplingSink, Course, LaggedFriction,

@@ -4,7 +4,7 @@ use super::friction_law::coulomb;
 use super::stencil::Stencil;
 use super::{
     ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws, Coulomb,
-    CouplingSink, Friction, FrictionError, FrictionLaw, StepSpan, add_weighted,
+    CouplingSink, Course, Friction, FrictionError, FrictionLaw, StepSpan, add_weighted,
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -51,28 +51,6 @@ enum LawOfContact {
         /// Effective step over the length of the step.
         part: f64,
     },
-}
-
-/// The step of a method: where it starts, and how it makes velocities.
-#[derive(Debug, Clone, Copy)]
-pub struct Course<'a> {
-    /// Positions at the start, `3V`, metres.
-    pub start: &'a [f64],
-    /// The positions `y` of `x1 = y + tau v1`, `3V`, metres. Coulomb's law does not look at them.
-    pub rest: &'a [f64],
-    /// The effective step `tau`, seconds.
-    pub tau: f64,
-}
-
-impl<'a> Course<'a> {
-    /// A step of `h` seconds whose velocities are displacements over its length.
-    pub fn from_start(start: &'a [f64], h: f64) -> Self {
-        Self {
-            start,
-            rest: start,
-            tau: h,
-        }
-    }
 }
 
 impl FrictionContact {
@@ -346,8 +324,11 @@ impl LaggedFriction {
             return Ok(());
         }
         let is_other = |s: &Sliding<'_>| matches!(s.contact.law, LawOfContact::Other { .. });
-        let mut others = self.all(x, bodies).filter(is_other);
-        others.try_for_each(|sliding| check(sliding.law, sliding.speed()))
+        let others = self.all(x, bodies).filter(is_other);
+        let speeds = others.map(|sliding| (sliding.law, sliding.speed()));
+        // No law is to blame for positions that are no numbers.
+        let mut speeds = speeds.filter(|(_, speed)| speed.is_finite());
+        speeds.try_for_each(|(law, speed)| check(law, speed))
     }
 
     /// The contacts, in the order of their keys.

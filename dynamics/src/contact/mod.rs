@@ -30,6 +30,7 @@ mod barrier;
 mod body;
 #[cfg(test)]
 pub(crate) mod contact_tests;
+mod course;
 mod friction;
 mod friction_law;
 #[doc(hidden)]
@@ -48,6 +49,7 @@ pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
+pub(crate) use course::Course;
 pub use friction::{Coefficients, Coulomb};
 pub use friction_law::{Friction, FrictionLaw};
 pub(crate) use friction_law::{check_values, name_of, wrong};

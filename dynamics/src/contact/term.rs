@@ -1,6 +1,6 @@
 //! Contact as a term of the objective of a step.
 
-use super::lagged::Course;
+use super::course::EndVelocity;
 use super::surface_points::CarriedSink;
 use super::{
     ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactLaws, ContactSet,
@@ -46,10 +46,7 @@ struct InStep {
     friction_fault: Option<FrictionError>,
     /// The points at the start of the step.
     start: Vec<f64>,
-    /// The points at the positions `y` of `x1 = y + tau v1`, and the effective step `tau`, seconds. There are
-    /// none without other laws of friction than Coulomb's.
-    rest: Vec<f64>,
-    tau: f64,
+    velocity: EndVelocity,
     /// The points at the end of the motion that was checked last, and the contacts there.
     end: Vec<f64>,
     ahead: ActiveContacts,
@@ -214,8 +211,7 @@ impl InStep {
             forces: Vec::new(),
             friction_before: LaggedFriction::none(),
             friction_fault: None,
-            rest: Vec::new(),
-            tau: start.h,
+            velocity: EndVelocity::default(),
             start_work: 0.0,
             start_energy: 0.0,
             zeros,
@@ -267,15 +263,6 @@ impl InStep {
         friction.check(x, active.bodies(), check)
     }
 
-    /// The step, for friction.
-    fn course(&self) -> Course<'_> {
-        Course {
-            start: &self.start,
-            rest: &self.rest,
-            tau: self.tau,
-        }
-    }
-
     /// Adds to `out` (`3V`) what `add` adds at the points.
     fn add_carried(&mut self, out: &mut [f64], add: impl FnOnce(&Self, &mut [f64])) {
         let Some(points) = &self.points else {
@@ -293,23 +280,14 @@ impl InStep {
     /// Friction is lagged at the start.
     fn set_start(&mut self, geometry: &dyn Contact, start: &StepStart<'_>) {
         let laws = geometry.laws();
-        self.tau = start.h;
         self.friction_fault = None;
-        if laws.has_other_laws() {
-            let rest = SurfacePoints::placed(self.points.as_deref(), start.rest);
-            self.rest.clear();
-            self.rest.extend_from_slice(&rest);
-        }
+        self.velocity.update(laws, self.points.as_deref(), start);
         let ContactState {
             barrier,
             active,
             friction,
         } = &mut self.state;
-        let course = Course {
-            start: &self.start,
-            rest: &self.rest,
-            tau: self.tau,
-        };
+        let course = self.velocity.course(&self.start);
         friction.lag(laws, barrier, active, course, &self.start);
         self.start_energy = active.barrier_energy(barrier);
         self.start_work = match self.bodies.any_moves() {
@@ -481,11 +459,7 @@ impl Term for ContactTerm {
             None => &step.x,
             Some(_) => &step.surface,
         };
-        let course = Course {
-            start: &step.start,
-            rest: &step.rest,
-            tau: step.tau,
-        };
+        let course = step.velocity.course(&step.start);
         friction.lag(self.geometry.laws(), barrier, active, course, x);
         let has_changed = friction.change_since(&step.friction_before) > settled;
         if !has_changed {
@@ -524,7 +498,7 @@ impl Term for ContactTerm {
             self.geometry.laws(),
             terms.barrier,
             terms.active,
-            step.course(),
+            step.velocity.course(&step.start),
             terms.x,
         );
         let settled_friction = settled.loss(terms.x, terms.active.bodies());

@@ -146,6 +146,48 @@ fn a_belt_under_a_sheet_at_rest_loses_its_work() {
     assert!((force[0] - 1.0).abs() < 1e-15, "taken along: {force:?}");
 }
 
+/// A law in metres per second at velocities at the end of a step is Coulomb's law in metres a step.
+#[test]
+fn other_laws_have_speeds_in_metres_per_second() {
+    let (tau, rest_speed) = (1e-2, 1e-2);
+    let coulomb = Coulomb::new(0.5, 0.3, rest_speed * tau).unwrap();
+    let by_distance = friction(vec![contact(
+        [1.0, -0.2, -0.5, -0.3],
+        [0.3, 0.2, 1.0],
+        3.0,
+        coulomb,
+    )]);
+    let mut by_speed = by_distance.clone();
+    by_speed.contacts[0].law = LawOfContact::Other {
+        number: 0,
+        tau,
+        part: 1.0,
+    };
+    by_speed.others = vec![Arc::new(Coulomb::new(0.5, 0.3, rest_speed).unwrap())];
+    // From other positions than those at the start.
+    let start: [f64; 12] = std::array::from_fn(|i| 1e-3 * (i as f64).sin());
+    by_speed.rest = start.to_vec();
+    for part in [0.5, 1.7, 5.0] {
+        let dx: [f64; 12] = std::array::from_fn(|i| part * 1e-4 * (2.0 * i as f64).cos());
+        let x: [f64; 12] = std::array::from_fn(|i| start[i] + dx[i]);
+        let found = [(&by_distance, &dx), (&by_speed, &x)].map(|(friction, x)| {
+            let (mut gradient, mut hessian) = ([0.0; 12], Dense(nalgebra::SMatrix::zeros()));
+            friction.add_gradient(x, &[], 1.0, &mut gradient);
+            friction.add_hessian(x, &[], &mut hessian);
+            (friction.energy(x, &[]), gradient, hessian.0)
+        });
+        let [(e0, g0, h0), (e1, g1, h1)] = found;
+        assert!((e0 - e1).abs() < 1e-12 * e0.abs(), "{e0} {e1}");
+        assert!(g0.iter().zip(&g1).all(|(a, b)| (a - b).abs() < 1e-10));
+        assert!((h0 - h1).norm() < 1e-10 * h0.norm());
+        let speed = by_speed.sliding(&by_speed.contacts[0], &x, &[]).speed();
+        let distance = by_distance
+            .sliding(&by_distance.contacts[0], &dx, &[])
+            .speed();
+        assert!((speed * tau - distance).abs() < 1e-12 * distance);
+    }
+}
+
 #[test]
 fn changes_are_relative_to_the_largest_force() {
     let law = Coulomb::new(0.5, 0.5, 1e-4).unwrap();
