@@ -85,7 +85,7 @@ fn pieces(
                 black_box(&active),
                 Course::from_start(x, span.h),
                 x,
-            )
+            );
         });
     });
     let terms = ContactTerms {
