@@ -284,8 +284,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 21,
-            supported: 20
+            found: 20,
+            supported: 21
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -304,7 +304,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 20
+            supported: 21
         })
     );
     assert!(matches!(
