@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// The surfaces slide by `u = (I - n n^T) (sum_i w_i dx_i - d)` with the displacements `dx_i` of the points
 /// and `d` of the body's material point, at a speed `|u| / tau`; the potential is `tau N F(|u| / tau)` with
 /// the normal force `N` and the integral `F` of the friction law. For Coulomb's law the displacements are
-/// those since the start of the step, and the unit of time is the step, `tau = 1`. For other laws `u / tau` is
-/// the velocity at the end of the step by the formula of the method: the displacements are those from the
+/// those since the start of the step, and the unit of time is the step, `tau = 1`. For other laws `u / tau`
+/// is the velocity at the end of the step by the formula of the method: the displacements are those from the
 /// positions `y` of `x1 = y + tau v1` with the effective step `tau`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrictionContact {

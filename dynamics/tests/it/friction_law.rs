@@ -1,4 +1,4 @@
-//! Laws of friction from outside: a plate that slides on a plane against closed forms, wrong laws, checkpoints.
+//! Laws of friction from outside: a plate on a plane against closed forms, wrong laws, checkpoints.
 
 use isosheet_dynamics::contact::{
     ActiveContact, BodyMotion, BodyPlace, Coefficients, Contact, ContactError, ContactKey,
@@ -164,8 +164,8 @@ impl FrictionLaw for Viscous {
     }
 }
 
-/// A curve like Stribeck's: dry friction, which rises from rest, more of it at low speeds, and viscous friction,
-/// `mu = a (1 - exp(-v/e)) + b (v/s) exp(1 - v/s) + c v`.
+/// A curve like Stribeck's: dry friction, which rises from rest, more of it at low speeds, and viscous
+/// friction, `mu = a (1 - exp(-v/e)) + b (v/s) exp(1 - v/s) + c v`.
 #[derive(Debug, Clone, Copy)]
 struct Stribeck {
     a: f64,
