@@ -3,7 +3,7 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::contact::internals::{
-    BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+    BarrierPotential, ContactSet, ContactTerms, CouplingSink, Course, LaggedFriction,
 };
 use isosheet_dynamics::contact::{ActiveContacts, BodyMotions, Contact, JointMotion, StepSpan};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -78,7 +78,15 @@ fn pieces(
         b.iter(|| active.update(&contacts, &set, 1.0, black_box(x)));
     });
     group.bench_function(id("lag friction"), |b| {
-        b.iter(|| friction.lag(contacts.laws(), &barrier, black_box(&active), [x; 2]));
+        b.iter(|| {
+            friction.lag(
+                contacts.laws(),
+                &barrier,
+                black_box(&active),
+                Course::from_start(x, span.h),
+                x,
+            );
+        });
     });
     let terms = ContactTerms {
         x,

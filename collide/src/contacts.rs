@@ -25,9 +25,9 @@ use crate::Obstacle;
 use body::ContactBody;
 use evaluate::{Placed, SheetAt};
 use isosheet_dynamics::contact::{
-    ActiveContact, ActiveContacts, BodyMotion, BodyPlace, CarriedPoint, Coefficients, Contact,
-    ContactError, ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepMotion,
-    StepSpan, SurfacePoints,
+    ActiveContact, ActiveContacts, BodyMotion, BodyPlace, CarriedPoint, Contact, ContactError,
+    ContactKey, ContactLaws, Friction, JointMotion, ObstaclePair, SheetPair, StepMotion, StepSpan,
+    SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_geometry::{CcdOptions, ContactMesh, RigidPath};
@@ -206,13 +206,14 @@ impl Contacts {
     pub fn for_sheet(
         model: &SheetModel,
         obstacles: impl IntoIterator<Item = Obstacle>,
-        coefficients: Coefficients,
+        friction: impl Into<Friction>,
     ) -> Result<Self, ContactsError> {
-        let itself =
-            Self::new(model, ContactOptions::for_sheet(model))?.with_self_contact(coefficients)?;
+        let friction = friction.into();
+        let itself = Self::new(model, ContactOptions::for_sheet(model))?
+            .with_self_contact(friction.clone())?;
         let mut obstacles = obstacles.into_iter();
         obstacles.try_fold(itself, |contacts, obstacle| {
-            contacts.with_body(obstacle, coefficients)
+            contacts.with_body(obstacle, friction.clone())
         })
     }
 
@@ -224,9 +225,10 @@ impl Contacts {
     pub fn with_body(
         mut self,
         obstacle: Obstacle,
-        coefficients: Coefficients,
+        friction: impl Into<Friction>,
     ) -> Result<Self, ContactsError> {
-        coefficients.validate()?;
+        let friction = friction.into();
+        friction.validate()?;
         let number = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         let segments = self.options.segments;
         self.bodies.push(ContactBody::new(
@@ -235,7 +237,7 @@ impl Contacts {
             segments,
             self.rounds.ends(),
         )?);
-        self.laws.bodies.push(coefficients);
+        self.laws.bodies.push(friction);
         self.neighbours = None;
         Ok(self)
     }
@@ -245,8 +247,12 @@ impl Contacts {
     /// # Errors
     /// [`ContactsError::Friction`]; [`ContactsError::Reach`] if the barrier would act between
     /// neighbours in a flat sheet.
-    pub fn with_self_contact(mut self, coefficients: Coefficients) -> Result<Self, ContactsError> {
-        coefficients.validate()?;
+    pub fn with_self_contact(
+        mut self,
+        friction: impl Into<Friction>,
+    ) -> Result<Self, ContactsError> {
+        let friction = friction.into();
+        friction.validate()?;
         let faces = (0..).zip(self.mesh.faces().iter().zip(&self.heights));
         let of_faces = faces.map(|(face, (&[v, ..], &height))| {
             let thickness = self.thickness.between(v, v);
@@ -264,7 +270,7 @@ impl Contacts {
             });
         }
         self.has_self_contact = true;
-        self.laws.itself = coefficients;
+        self.laws.itself = friction;
         self.neighbours = None;
         Ok(self)
     }
@@ -398,16 +404,17 @@ impl Contacts {
     pub fn with_friction_between(
         mut self,
         vertices: [Range<usize>; 2],
-        coefficients: Coefficients,
+        friction: impl Into<Friction>,
     ) -> Result<Self, ContactsError> {
-        coefficients.validate()?;
+        let friction = friction.into();
+        friction.validate()?;
         let [first, second] = vertices
             .each_ref()
             .map(|range| self.rounds.with_those_in(range));
         for a in &first {
             self.laws.pairs.extend(second.iter().map(|b| SheetPair {
                 vertices: [a.clone(), b.clone()],
-                coefficients,
+                friction: friction.clone(),
             }));
         }
         Ok(self)
@@ -438,16 +445,17 @@ impl Contacts {
         mut self,
         obstacle: u32,
         vertices: Range<usize>,
-        coefficients: Coefficients,
+        friction: impl Into<Friction>,
     ) -> Result<Self, ContactsError> {
-        coefficients.validate()?;
+        let friction = friction.into();
+        friction.validate()?;
         let ranges = self.rounds.with_those_in(&vertices).into_iter();
         self.laws
             .obstacle_pairs
             .extend(ranges.map(|vertices| ObstaclePair {
                 obstacle,
                 vertices,
-                coefficients,
+                friction: friction.clone(),
             }));
         Ok(self)
     }

@@ -40,7 +40,9 @@ mod contacts;
 mod obstacle;
 
 pub use contacts::{ContactOptions, Contacts, ContactsError, RoundBody};
-pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
+pub use isosheet_dynamics::contact::{
+    Coefficients, Friction, FrictionError, FrictionLaw, Stiffness,
+};
 pub use nalgebra;
 pub use obstacle::{Obstacle, ObstacleError};
 

@@ -70,6 +70,7 @@ pub use conservative::rattle::RattleOptions;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
+pub use diagnosis::friction_law::check_friction_law;
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use isosheet_materials::*;

@@ -284,8 +284,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 21,
-            supported: 20
+            found: 20,
+            supported: 21
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -299,12 +299,12 @@ fn other_sheets_versions_and_damage_are_refused() {
         assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
     }
     let text = checkpoint.to_json().expect("encoded");
-    let other = text.replacen("\"version\":20", "\"version\":9", 1);
+    let other = text.replacen("\"version\":21", "\"version\":9", 1);
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 20
+            supported: 21
         })
     );
     assert!(matches!(

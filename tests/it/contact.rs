@@ -2,7 +2,7 @@
 
 use crate::watch::Watch;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
-use isosheet_dynamics::contact::internals::{BarrierPotential, ContactSet, LaggedFriction};
+use isosheet_dynamics::contact::internals::{BarrierPotential, ContactSet, Course, LaggedFriction};
 use isosheet_dynamics::contact::{ActiveContacts, BodyMotions, Contact, JointMotion, StepSpan};
 use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
@@ -350,7 +350,13 @@ fn barrier_and_lagged_friction_survive_a_file() {
     let set = ContactSet::of(&mut contacts, motion);
     let active = ActiveContacts::at(&contacts, &set, 1.0, &start.x);
     let mut friction = LaggedFriction::none();
-    friction.lag(contacts.laws(), &barrier, &active, [&start.x; 2]);
+    friction.lag(
+        contacts.laws(),
+        &barrier,
+        &active,
+        Course::from_start(&start.x, span.h),
+        &start.x,
+    );
     assert_eq!(friction.contacts().len(), 25);
     let text = serde_json::to_string(&(barrier, &friction)).expect("finite");
     let back: (BarrierPotential, LaggedFriction) = serde_json::from_str(&text).expect("readable");

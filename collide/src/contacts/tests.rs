@@ -6,10 +6,10 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Stiffness};
+use crate::{Coefficients, Keyframe, Stiffness};
 use isosheet_dynamics::contact::BodyMotions;
 use isosheet_dynamics::contact::internals::{
-    BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+    BarrierPotential, ContactSet, ContactTerms, CouplingSink, Course, LaggedFriction,
 };
 use isosheet_geometry::{
     ContactGeometry, Form, Shape, ShapeError, SignedDistance, TriangleSurface, Triangles,
@@ -32,12 +32,13 @@ fn model(sheet: &Sheet) -> SheetModel {
 fn contact_in_one_call_has_all_obstacles_and_the_sheet_itself() {
     let model = model(&sheet(1));
     let floor = |z| Obstacle::at(Shape::HalfSpace, [0.0, 0.0, z]).unwrap();
-    let friction = Coefficients::equal(0.3);
-    let contacts = Contacts::for_sheet(&model, [floor(-1.0), floor(-2.0)], friction).unwrap();
+    let friction = Friction::from(Coefficients::equal(0.3));
+    let contacts =
+        Contacts::for_sheet(&model, [floor(-1.0), floor(-2.0)], friction.clone()).unwrap();
     assert_eq!(*contacts.options(), ContactOptions::for_sheet(&model));
     assert!(contacts.has_self_contact);
     assert_eq!(contacts.laws.itself, friction);
-    assert_eq!(contacts.laws.bodies, [friction; 2]);
+    assert_eq!(contacts.laws.bodies, [friction.clone(), friction]);
     assert_eq!(contacts.bodies().len(), 2);
     let negative = Contacts::for_sheet(&model, [], Coefficients::equal(-0.1));
     assert!(matches!(negative, Err(ContactsError::Friction(_))));
@@ -249,8 +250,13 @@ impl Step {
             friction: LaggedFriction::none(),
         };
         let active = step.active(x);
-        step.friction
-            .lag(step.contacts.laws(), &barrier, &active, [x; 2]);
+        step.friction.lag(
+            step.contacts.laws(),
+            &barrier,
+            &active,
+            Course::from_start(x, h),
+            x,
+        );
         step
     }
 

@@ -25,7 +25,7 @@ pub mod term;
 
 pub use constraint::VertexConstraint;
 pub use report::contact_error::{
-    BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError,
+    BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError, FrictionLawFault,
 };
 pub use report::engine_error::{AdvisedError, EngineError};
 pub use report::infeasibility::{Driver, Infeasibility};

@@ -1,9 +1,9 @@
 //! Smoothed Coulomb friction.
 
-use super::FrictionError;
+use super::{FrictionError, FrictionLaw};
 use serde::{Deserialize, Serialize};
 
-/// Coefficients of Coulomb friction, see [`Friction`].
+/// Coefficients of Coulomb friction, see [`Coulomb`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coefficients {
     /// Static coefficient, at least the kinetic one.
@@ -35,28 +35,30 @@ impl Coefficients {
     /// # Errors
     /// [`FrictionError`] unless `0 <= sliding <= rest`.
     pub fn validate(&self) -> Result<(), FrictionError> {
-        Friction::new(self.rest, self.sliding, 1.0).map(|_| ())
+        Coulomb::new(self.rest, self.sliding, 1.0).map(|_| ())
     }
 }
 
 /// Coulomb's law with the jump at rest smoothed out.
 ///
-/// For a sliding distance `y` within a step the friction force is the normal force times
+/// At a sliding speed `v` the friction force is the normal force times
 ///
 /// ```text
-/// f(y) = mu_s (2 - y/e) y/e                               for y < e           (sticking)
-/// f(y) = mu_s - (mu_s - mu_k) (3 - 2 w) w^2               for e <= y < 3 e,   w = (y - e) / (2 e)
-/// f(y) = mu_k                                             beyond              (sliding)
+/// mu(v) = mu_s (2 - v/e) v/e                               for v < e           (sticking)
+/// mu(v) = mu_s - (mu_s - mu_k) (3 - 2 w) w^2               for e <= v < 3 e,   w = (v - e) / (2 e)
+/// mu(v) = mu_k                                             beyond              (sliding)
 /// ```
 ///
-/// with the static and the kinetic coefficient and the smoothing distance `e`, the speed that counts
-/// as rest times the step. The first line is Li et al. 2020 (Incremental potential contact, Eq. 15);
-/// the second, a cubic step from the static to the kinetic coefficient, is ours. `f` is once
-/// continuously differentiable and the derivative of a dissipation potential
-/// ([`Friction::potential`]). With equal coefficients that potential is convex; otherwise it is not
-/// between `e` and `3 e`, as dry friction with two coefficients is.
+/// with the static and the kinetic coefficient and the speed `e` that counts as rest. The solver measures
+/// speeds of this law in metres a step: `v` is the sliding distance in the step, and `e` the speed that
+/// counts as rest times the step.
+///
+/// The first line is Li et al. 2020 (Incremental potential contact, Eq. 15); the second, a cubic step from
+/// the static to the kinetic coefficient, is ours. `mu` is once continuously differentiable. With equal
+/// coefficients its integral is convex; otherwise it is not between `e` and `3 e`, as dry friction with two
+/// coefficients is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Friction {
+pub struct Coulomb {
     rest: f64,
     sliding: f64,
     smoothing: f64,
@@ -66,12 +68,12 @@ pub struct Friction {
 /// as keeps its steepest descent (0.75 of the jump per `e`) below the ascent before it.
 const TRANSITION_WIDTH: f64 = 2.0;
 
-impl Friction {
-    /// With the static coefficient `rest`, the kinetic coefficient `sliding` and the smoothing
-    /// distance in metres.
+impl Coulomb {
+    /// With the static coefficient `rest`, the kinetic coefficient `sliding` and the speed `smoothing` that
+    /// counts as rest.
     ///
     /// # Errors
-    /// [`FrictionError`] unless `0 <= sliding <= rest` and the smoothing distance is positive.
+    /// [`FrictionError`] unless `0 <= sliding <= rest` and `smoothing` is positive.
     pub fn new(rest: f64, sliding: f64, smoothing: f64) -> Result<Self, FrictionError> {
         let valid = |c: f64| c >= 0.0 && c.is_finite();
         if !valid(rest) || !valid(sliding) {
@@ -99,28 +101,30 @@ impl Friction {
     pub fn sliding(&self) -> f64 {
         self.sliding
     }
+}
 
-    /// Friction force over normal force after sliding a distance `y >= 0` (metres) in the step.
-    pub fn force(&self, y: f64) -> f64 {
-        y * self.force_over_distance(y)
+impl FrictionLaw for Coulomb {
+    fn coefficient(&self, v: f64) -> f64 {
+        v * self.coefficient_over_speed(v)
     }
 
-    /// `f(y) / y`, one over metres: finite at rest, where it is `2 mu_s / e`.
-    pub(crate) fn force_over_distance(&self, y: f64) -> f64 {
+    /// Li et al. 2020 add a constant, `e/3`, that makes it `v` beyond `e`; here it vanishes at rest.
+    fn integral(&self, v: f64) -> f64 {
         let e = self.smoothing;
-        let u = y / e;
+        let u = v / e;
         if u < 1.0 {
-            self.rest * (2.0 - u) / e
-        } else {
-            let w = ((u - 1.0) / TRANSITION_WIDTH).min(1.0);
-            (self.rest - (self.rest - self.sliding) * (3.0 - 2.0 * w) * w * w) / y
+            return self.rest * e * u * u * (1.0 - u / 3.0);
         }
+        let w = (u - 1.0) / TRANSITION_WIDTH;
+        let c = w.min(1.0);
+        let passed = TRANSITION_WIDTH * e * c * c * c * (1.0 - 0.5 * c);
+        let beyond = TRANSITION_WIDTH * e * (w - c);
+        self.rest * (2.0 / 3.0 * e + v - e) - (self.rest - self.sliding) * (passed + beyond)
     }
 
-    /// `df/dy`, one over metres.
-    pub(crate) fn force_slope(&self, y: f64) -> f64 {
+    fn slope(&self, v: f64) -> f64 {
         let e = self.smoothing;
-        let u = y / e;
+        let u = v / e;
         if u < 1.0 {
             2.0 * self.rest * (1.0 - u) / e
         } else {
@@ -129,20 +133,16 @@ impl Friction {
         }
     }
 
-    /// The integral of the force from 0 to `y`, metres: dissipation potential over normal force.
-    ///
-    /// Li et al. 2020 add a constant, `e/3`, that makes it `y` beyond `e`; here it vanishes at rest.
-    pub fn potential(&self, y: f64) -> f64 {
+    /// At rest it is `2 mu_s / e`.
+    fn coefficient_over_speed(&self, v: f64) -> f64 {
         let e = self.smoothing;
-        let u = y / e;
+        let u = v / e;
         if u < 1.0 {
-            return self.rest * e * u * u * (1.0 - u / 3.0);
+            self.rest * (2.0 - u) / e
+        } else {
+            let w = ((u - 1.0) / TRANSITION_WIDTH).min(1.0);
+            (self.rest - (self.rest - self.sliding) * (3.0 - 2.0 * w) * w * w) / v
         }
-        let w = (u - 1.0) / TRANSITION_WIDTH;
-        let c = w.min(1.0);
-        let passed = TRANSITION_WIDTH * e * c * c * c * (1.0 - 0.5 * c);
-        let beyond = TRANSITION_WIDTH * e * (w - c);
-        self.rest * (2.0 / 3.0 * e + y - e) - (self.rest - self.sliding) * (passed + beyond)
     }
 }
 
@@ -157,48 +157,48 @@ mod tests {
         #[test]
         fn law_is_consistent(u in 0.0..5.0_f64, size in -6.0..3.0_f64, rest in 0.0..2.0_f64, part in 0.0..=1.0_f64) {
             let e = 10.0_f64.powf(size);
-            let f = Friction::new(rest, part * rest, e).unwrap();
+            let f = Coulomb::new(rest, part * rest, e).unwrap();
             let y = u * e;
             let h = 1e-6 * e;
             let y = y.max(2.0 * h);
             let scale = rest + 1e-9;
-            let slope = (f.potential(y + h) - f.potential(y - h)) / (2.0 * h);
-            prop_assert!((slope - f.force(y)).abs() < 1e-8 * scale);
+            let slope = (f.integral(y + h) - f.integral(y - h)) / (2.0 * h);
+            prop_assert!((slope - f.coefficient(y)).abs() < 1e-8 * scale);
             // The slope of the force jumps nowhere, its own slope is bounded by 2 mu / e^2.
-            let slope = (f.force(y + h) - f.force(y - h)) / (2.0 * h);
-            prop_assert!((slope - f.force_slope(y)).abs() < 1e-5 * scale / e);
-            prop_assert!((f.force_over_distance(y) * y - f.force(y)).abs() <= 1e-15 * scale);
-            prop_assert!(f.force(y) <= rest * (1.0 + 1e-15));
+            let slope = (f.coefficient(y + h) - f.coefficient(y - h)) / (2.0 * h);
+            prop_assert!((slope - f.slope(y)).abs() < 1e-5 * scale / e);
+            prop_assert!((f.coefficient_over_speed(y) * y - f.coefficient(y)).abs() <= 1e-15 * scale);
+            prop_assert!(f.coefficient(y) <= rest * (1.0 + 1e-15));
         }
     }
 
     #[test]
     fn the_static_coefficient_is_reached_and_the_kinetic_one_stays() {
-        let friction = Friction::new(0.6, 0.3, 1e-4).unwrap();
-        assert!((friction.force(1e-4) - 0.6).abs() < 1e-15);
-        assert!((friction.force(3e-4) - 0.3).abs() < 1e-15);
-        assert!((friction.force(1.0) - 0.3).abs() < 1e-15);
+        let friction = Coulomb::new(0.6, 0.3, 1e-4).unwrap();
+        assert!((friction.coefficient(1e-4) - 0.6).abs() < 1e-15);
+        assert!((friction.coefficient(3e-4) - 0.3).abs() < 1e-15);
+        assert!((friction.coefficient(1.0) - 0.3).abs() < 1e-15);
         // Rest has a finite stiffness.
         let stiffness = 2.0 * 0.6 / 1e-4;
-        assert!((friction.force_over_distance(0.0) - stiffness).abs() < 1e-9 * stiffness);
+        assert!((friction.coefficient_over_speed(0.0) - stiffness).abs() < 1e-9 * stiffness);
     }
 
     #[test]
     fn bad_coefficients_are_refused() {
         assert!(matches!(
-            Friction::new(-0.1, 0.0, 1.0),
+            Coulomb::new(-0.1, 0.0, 1.0),
             Err(FrictionError::Coefficient { .. })
         ));
         assert!(matches!(
-            Friction::new(0.1, f64::NAN, 1.0),
+            Coulomb::new(0.1, f64::NAN, 1.0),
             Err(FrictionError::Coefficient { .. })
         ));
         assert!(matches!(
-            Friction::new(0.1, 0.2, 1.0),
+            Coulomb::new(0.1, 0.2, 1.0),
             Err(FrictionError::Order { .. })
         ));
         assert_eq!(
-            Friction::new(0.1, 0.1, 0.0),
+            Coulomb::new(0.1, 0.1, 0.0),
             Err(FrictionError::Smoothing(0.0))
         );
     }

@@ -2,6 +2,7 @@
 //! reports of the workspace. It is no part of the public interface and may change in any version.
 
 pub use super::barrier::BarrierPotential;
+pub use super::course::Course;
 pub use super::lagged::{FrictionContact, LaggedFriction};
 pub use super::set::ContactSet;
 pub use super::stencil::Stencil;

@@ -1,19 +1,24 @@
 //! Friction of a step: contacts with constant normals and normal forces.
 
+use super::friction_law::coulomb;
 use super::stencil::Stencil;
 use super::{
-    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws,
-    CouplingSink, Friction, add_weighted,
+    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws, Coulomb,
+    CouplingSink, Course, Friction, FrictionError, FrictionLaw, StepSpan, add_weighted,
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Friction at one contact with normal, closest points and normal force as they are at the positions
 /// at which it was lagged (Li et al. 2020, Incremental potential contact, Sec. 5).
 ///
-/// For displacements `dx_i` since the start of the step, and `d` of the body's material point, the contact
-/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`, where the surfaces touch; its potential is `N F(|u|)`
-/// with the normal force `N` and the integral `F` of the friction law.
+/// The surfaces slide by `u = (I - n n^T) (sum_i w_i dx_i - d)` with the displacements `dx_i` of the points
+/// and `d` of the body's material point, at a speed `|u| / tau`; the potential is `tau N F(|u| / tau)` with
+/// the normal force `N` and the integral `F` of the friction law. For Coulomb's law the displacements are
+/// those since the start of the step, and the unit of time is the step, `tau = 1`. For other laws `u / tau`
+/// is the velocity at the end of the step by the formula of the method: the displacements are those from the
+/// positions `y` of `x1 = y + tau v1` with the effective step `tau`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrictionContact {
     /// Which two primitives.
@@ -30,14 +35,29 @@ pub struct FrictionContact {
     point: Vector3<f64>,
     /// Its place in space at the start of the step, metres.
     point_start: Vector3<f64>,
-    law: Friction,
+    law: LawOfContact,
+}
+
+/// The law of friction at a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+enum LawOfContact {
+    /// With speeds in metres a step.
+    Coulomb(Coulomb),
+    /// Another law, by its number in [`LaggedFriction`].
+    Other {
+        number: u32,
+        /// Effective step, seconds.
+        tau: f64,
+        /// Effective step over the length of the step.
+        part: f64,
+    },
 }
 
 impl FrictionContact {
     fn new(
         contact: &ActiveContact,
         barrier: &BarrierPotential,
-        law: Friction,
+        law: LawOfContact,
         x: &[f64],
         bodies: &[BodyPlace],
     ) -> Self {
@@ -61,51 +81,72 @@ impl FrictionContact {
         }
     }
 
-    /// How far the sheet has slid since the start of the step, relative to the body, metres.
-    fn slip(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> Vector3<f64> {
+    /// How far the surfaces slide on each other while the points go from `from` to `x`, and the body goes a
+    /// part of its way since the start of the step; metres.
+    fn slip(&self, from: &[f64], x: &[f64], bodies: &[BodyPlace], part: f64) -> Vector3<f64> {
         let mut u = Vector3::zeros();
         for (v, w) in self.stencil.iter() {
             let i = 3 * v as usize;
-            u += w * Vector3::new(x[i] - x0[i], x[i + 1] - x0[i + 1], x[i + 2] - x0[i + 2]);
+            u += w * Vector3::new(
+                x[i] - from[i],
+                x[i + 1] - from[i + 1],
+                x[i + 2] - from[i + 2],
+            );
         }
         if let Some(b) = self.key.body {
-            u -= bodies[b as usize].material_place(&self.point) - self.point_start;
+            let body = &bodies[b as usize];
+            u -= part * (body.material_place(&self.point) - self.point_start);
         }
         let n = &self.normal;
         u - n * n.dot(&u)
     }
+}
 
-    /// Dissipation potential, joules.
-    fn energy(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> f64 {
-        let y = self.slip(x0, x, bodies).norm();
-        self.force * self.law.potential(y)
+/// A contact that slides.
+struct Sliding<'a> {
+    contact: &'a FrictionContact,
+    law: &'a dyn FrictionLaw,
+    /// `u`, metres.
+    slip: Vector3<f64>,
+    /// `tau`, seconds.
+    tau: f64,
+}
+
+impl Sliding<'_> {
+    /// `|u| / tau`, metres per second.
+    fn speed(&self) -> f64 {
+        self.slip.norm() / self.tau
     }
 
-    /// Energy lost if the present force acts over the whole displacement, joules.
-    fn loss(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> f64 {
-        let y = self.slip(x0, x, bodies).norm();
-        self.force * self.law.force(y) * y
+    /// Dissipation potential, joules.
+    fn energy(&self) -> f64 {
+        self.contact.force * (self.tau * self.law.integral(self.speed()))
     }
 
     /// Force on the body (or the second place of the sheet), newtons: along the slip of the sheet.
-    fn traction(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> Vector3<f64> {
-        let u = self.slip(x0, x, bodies);
-        self.force * self.law.force_over_distance(u.norm()) * u
+    fn traction(&self) -> Vector3<f64> {
+        self.contact.force * self.ratio() * self.slip
+    }
+
+    /// `mu / |u|`, one over metres.
+    fn ratio(&self) -> f64 {
+        self.law.coefficient_over_speed(self.speed()) / self.tau
     }
 
     /// The Hessian of the potential; for a law that falls, its slope is replaced by zero where it is
     /// negative.
-    fn hessian(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace], sink: &mut dyn CouplingSink) {
-        let u = self.slip(x0, x, bodies);
-        let (y, n) = (u.norm(), &self.normal);
-        let ratio = self.force * self.law.force_over_distance(y);
+    fn hessian(&self, sink: &mut dyn CouplingSink) {
+        let contact = self.contact;
+        let (u, n) = (&self.slip, &contact.normal);
+        let y = u.norm();
+        let ratio = contact.force * self.ratio();
         let mut block = ratio * (Matrix3::identity() - n * n.transpose());
         if y > 0.0 {
             let t = u / y;
-            let slope = self.force * self.law.force_slope(y).max(0.0);
+            let slope = contact.force * (self.law.slope(self.speed()) / self.tau).max(0.0);
             block += (slope - ratio) * t * t.transpose();
         }
-        let (points, weights) = (self.stencil.points(), self.stencil.weights());
+        let (points, weights) = (contact.stencil.points(), contact.stencil.weights());
         add_weighted(points, weights, &block, sink);
     }
 }
@@ -114,11 +155,25 @@ impl FrictionContact {
 ///
 /// It belongs to a step, also after its end: the loads on the bodies ([`super::ContactTerms::loads`]) are
 /// those of the last step. The step after lags it anew.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct LaggedFriction {
     /// Positions at the start of the step, `3V`, metres; empty without contacts.
     x0: Vec<f64>,
+    /// The positions `y` that velocities at the end of the step are measured from, `3V`, metres; empty
+    /// without other laws than Coulomb's.
+    rest: Vec<f64>,
     contacts: Vec<FrictionContact>,
+    /// The other laws, in the order in which the contacts name them. A checkpoint has none: they come from
+    /// the scene.
+    #[serde(skip)]
+    others: Vec<Arc<dyn FrictionLaw>>,
+}
+
+/// Equal contacts; laws are told apart by their numbers.
+impl PartialEq for LaggedFriction {
+    fn eq(&self, other: &Self) -> bool {
+        self.x0 == other.x0 && self.rest == other.rest && self.contacts == other.contacts
+    }
 }
 
 impl LaggedFriction {
@@ -127,36 +182,153 @@ impl LaggedFriction {
         Self::default()
     }
 
-    /// Lags friction at active contacts at positions `x` of a step that started at positions `x0`; reuses
-    /// memory.
+    /// Lags friction at active contacts at positions `x` of a step; reuses memory.
     pub fn lag(
         &mut self,
         laws: &ContactLaws,
         barrier: &BarrierPotential,
         active: &ActiveContacts,
-        [x0, x]: [&[f64]; 2],
+        course: Course<'_>,
+        x: &[f64],
     ) {
         self.contacts.clear();
         self.x0.clear();
+        self.rest.clear();
+        self.others.clear();
         if laws.is_frictionless() {
             return;
         }
+        let span = active.span();
         for contact in active.list() {
-            if let Some(law) = laws.friction(contact.key.body, contact.vertices, active.span().h) {
-                let lagged = FrictionContact::new(contact, barrier, law, x, active.bodies());
-                if lagged.force > 0.0 {
-                    self.contacts.push(lagged);
+            let ends = [contact.vertices[0], contact.vertices[3]];
+            let friction = laws.friction(contact.key.body, ends);
+            let Some(law) = self.law_of(friction, laws.rest_speed, span, course.tau) else {
+                continue;
+            };
+            let lagged = FrictionContact::new(contact, barrier, law, x, active.bodies());
+            if lagged.force > 0.0 {
+                self.contacts.push(lagged);
+                if let (Friction::Law(law), LawOfContact::Other { number, .. }) = (friction, law)
+                    && number as usize == self.others.len()
+                {
+                    self.others.push(Arc::clone(law));
                 }
             }
         }
         if !self.contacts.is_empty() {
-            self.x0.extend_from_slice(x0);
+            self.x0.extend_from_slice(course.start);
         }
+        if !self.others.is_empty() {
+            self.rest.extend_from_slice(course.rest);
+        }
+    }
+
+    /// The law of a contact in a step; none without friction and in a step without duration.
+    fn law_of(
+        &self,
+        friction: &Friction,
+        rest_speed: f64,
+        span: StepSpan,
+        tau: f64,
+    ) -> Option<LawOfContact> {
+        match friction {
+            Friction::Coulomb(coefficients) => {
+                coulomb(*coefficients, rest_speed, span.h).map(LawOfContact::Coulomb)
+            }
+            Friction::Law(law) if span.h > 0.0 => Some(LawOfContact::Other {
+                number: self.number(law),
+                tau,
+                part: tau / span.h,
+            }),
+            Friction::Law(_) => None,
+        }
+    }
+
+    /// The number of a law: that of the next one where no contact has named it yet.
+    fn number(&self, law: &Arc<dyn FrictionLaw>) -> u32 {
+        let known = self.others.iter().position(|other| Arc::ptr_eq(other, law));
+        known.unwrap_or(self.others.len()) as u32
+    }
+
+    /// Takes the laws that a checkpoint does not have from those of the scene; whether they are such that the
+    /// contacts name the same ones.
+    pub(crate) fn take_laws(&mut self, laws: &ContactLaws) -> bool {
+        let mut others: Vec<Arc<dyn FrictionLaw>> = Vec::new();
+        for contact in &self.contacts {
+            let LawOfContact::Other { number, .. } = contact.law else {
+                continue;
+            };
+            let Friction::Law(law) = laws.friction(contact.key.body, contact.ends) else {
+                return false;
+            };
+            match others.get(number as usize) {
+                None if number as usize == others.len() => others.push(Arc::clone(law)),
+                Some(known) if Arc::ptr_eq(known, law) => {}
+                _ => return false,
+            }
+        }
+        self.others = others;
+        true
     }
 
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.x0.clone_from(&other.x0);
+        self.rest.clone_from(&other.rest);
         self.contacts.clone_from(&other.contacts);
+        self.others.clone_from(&other.others);
+    }
+
+    /// A contact as it slides where the points are at `x`.
+    fn sliding<'a>(
+        &'a self,
+        contact: &'a FrictionContact,
+        x: &[f64],
+        bodies: &[BodyPlace],
+    ) -> Sliding<'a> {
+        match &contact.law {
+            LawOfContact::Coulomb(law) => Sliding {
+                contact,
+                law,
+                slip: contact.slip(&self.x0, x, bodies, 1.0),
+                tau: 1.0,
+            },
+            LawOfContact::Other { number, tau, part } => Sliding {
+                contact,
+                law: self.others[*number as usize].as_ref(),
+                slip: contact.slip(&self.rest, x, bodies, *part),
+                tau: *tau,
+            },
+        }
+    }
+
+    /// All contacts as they slide.
+    fn all<'a>(
+        &'a self,
+        x: &'a [f64],
+        bodies: &'a [BodyPlace],
+    ) -> impl Iterator<Item = Sliding<'a>> {
+        self.contacts
+            .iter()
+            .map(move |c| self.sliding(c, x, bodies))
+    }
+
+    /// Asks `check` about the other laws than Coulomb's, at the speed of each of their contacts (metres per
+    /// second).
+    pub(crate) fn check(
+        &self,
+        x: &[f64],
+        bodies: &[BodyPlace],
+        check: fn(&dyn FrictionLaw, f64) -> Result<(), FrictionError>,
+    ) -> Result<(), FrictionError> {
+        if self.others.is_empty() {
+            return Ok(());
+        }
+        let is_other = |s: &Sliding<'_>| matches!(s.contact.law, LawOfContact::Other { .. });
+        let others = self.all(x, bodies).filter(is_other);
+        let speeds = others.map(|sliding| (sliding.law, sliding.speed()));
+        // No law is to blame for positions that are no numbers.
+        let mut speeds = speeds.filter(|(_, speed)| speed.is_finite());
+        speeds.try_for_each(|(law, speed)| check(law, speed))
     }
 
     /// The contacts, in the order of their keys.
@@ -192,14 +364,26 @@ impl LaggedFriction {
 
     /// The potential `D`, joules.
     pub fn energy(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
-        let all = self.contacts.iter();
-        all.map(|c| c.energy(&self.x0, x, bodies)).sum()
+        self.all(x, bodies).map(|sliding| sliding.energy()).sum()
     }
 
-    /// Energy lost to friction since the start of the step, joules; not negative.
+    /// Energy lost to friction if its present forces act over the whole displacement since the start of the
+    /// step, joules.
     pub(crate) fn loss(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
-        let all = self.contacts.iter();
-        all.map(|c| c.loss(&self.x0, x, bodies)).sum()
+        let loss = |sliding: Sliding<'_>| {
+            let Sliding { contact, law, .. } = sliding;
+            let y = sliding.slip.norm();
+            let distance = match contact.law {
+                LawOfContact::Coulomb(_) => y,
+                LawOfContact::Other { .. } if y > 0.0 => {
+                    let whole = contact.slip(&self.x0, x, bodies, 1.0);
+                    whole.dot(&sliding.slip) / y
+                }
+                LawOfContact::Other { .. } => 0.0,
+            };
+            contact.force * law.coefficient(sliding.speed()) * distance
+        };
+        self.all(x, bodies).map(loss).sum()
     }
 
     /// Work of the bodies against friction over the whole step, with its forces at the end, joules.
@@ -209,7 +393,7 @@ impl LaggedFriction {
             if let Some(body) = c.key.body.map(|b| &bodies[b as usize]) {
                 let displacement = body.material_end(&c.point) - c.point_start;
                 // The sheet pulls the body by this force; the body works against it.
-                work -= c.traction(&self.x0, x, bodies).dot(&displacement);
+                work -= self.sliding(c, x, bodies).traction().dot(&displacement);
             }
         }
         work
@@ -218,7 +402,7 @@ impl LaggedFriction {
     /// Adds `scale` times the gradient of `D` (newtons) to `out` (`3V`).
     pub fn add_gradient(&self, x: &[f64], bodies: &[BodyPlace], scale: f64, out: &mut [f64]) {
         for c in &self.contacts {
-            let force = scale * c.traction(&self.x0, x, bodies);
+            let force = scale * self.sliding(c, x, bodies).traction();
             for (v, w) in c.stencil.iter() {
                 super::add_at(out, v, w * force);
             }
@@ -234,15 +418,14 @@ impl LaggedFriction {
         mut add: impl FnMut(&FrictionContact, Vector3<f64>),
     ) {
         for c in &self.contacts {
-            add(c, -c.traction(&self.x0, x, bodies));
+            add(c, -self.sliding(c, x, bodies).traction());
         }
     }
 
     /// Adds the Hessian of `D` (newtons per metre), each contact's own part made positive semidefinite.
     pub fn add_hessian(&self, x: &[f64], bodies: &[BodyPlace], sink: &mut dyn CouplingSink) {
-        for c in &self.contacts {
-            c.hessian(&self.x0, x, bodies, sink);
-        }
+        self.all(x, bodies)
+            .for_each(|sliding| sliding.hessian(sink));
     }
 
     /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts
@@ -256,7 +439,7 @@ impl LaggedFriction {
         for c in &self.contacts {
             if let Some(b) = c.key.body {
                 let place = bodies[b as usize].material_place(&c.point);
-                add(b, c.traction(&self.x0, x, bodies), place);
+                add(b, self.sliding(c, x, bodies).traction(), place);
             }
         }
     }

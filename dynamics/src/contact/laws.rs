@@ -1,6 +1,6 @@
 //! The parameters of a scene's contact.
 
-use super::{Coefficients, Friction, FrictionError};
+use super::{Friction, FrictionError};
 use std::ops::Range;
 
 /// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
@@ -24,8 +24,8 @@ pub enum Stiffness {
 pub struct SheetPair {
     /// The vertices of the two sheets ([`Part::vertices`](isosheet_mesh::Part::vertices)).
     pub vertices: [Range<usize>; 2],
-    /// The coefficients.
-    pub coefficients: Coefficients,
+    /// Their friction.
+    pub friction: Friction,
 }
 
 impl SheetPair {
@@ -43,8 +43,8 @@ pub struct ObstaclePair {
     pub obstacle: u32,
     /// The vertices of the sheet ([`Part::vertices`](isosheet_mesh::Part::vertices)).
     pub vertices: Range<usize>,
-    /// The coefficients.
-    pub coefficients: Coefficients,
+    /// Their friction.
+    pub friction: Friction,
 }
 
 /// The parameters of barrier and friction.
@@ -54,14 +54,14 @@ pub struct ContactLaws {
     pub activation: f64,
     /// Stiffness of the barrier.
     pub stiffness: Stiffness,
-    /// Speed below which sliding counts as rest, metres per second.
+    /// Speed below which sliding counts as rest, metres per second. Coulomb's law needs it, and no other.
     pub rest_speed: f64,
     /// Friction of the sheet with itself, and of sheets that are no pair of `pairs`.
-    pub itself: Coefficients,
+    pub itself: Friction,
     /// Friction of pairs of sheets, where it is another.
     pub pairs: Vec<SheetPair>,
     /// Friction of the sheet with each body, in the order of the bodies; none where a body has no entry.
-    pub bodies: Vec<Coefficients>,
+    pub bodies: Vec<Friction>,
     /// Friction of single sheets with bodies, where it is another.
     pub obstacle_pairs: Vec<ObstaclePair>,
 }
@@ -73,52 +73,41 @@ impl ContactLaws {
             activation,
             stiffness: Stiffness::Automatic,
             rest_speed: 0.0,
-            itself: Coefficients::FRICTIONLESS,
+            itself: Friction::NONE,
             pairs: Vec::new(),
             bodies: Vec::new(),
             obstacle_pairs: Vec::new(),
         }
     }
 
-    /// The coefficients of friction with a body, or where these four vertices of sheets meet, the first and
-    /// the last of which are of the two that do.
-    pub(crate) fn coefficients(&self, body: Option<u32>, vertices: [u32; 4]) -> Coefficients {
+    /// Friction with a body, or between the sheets of the first and the last vertex of a contact
+    /// ([`ActiveContact::vertices`](super::ActiveContact::vertices)).
+    pub fn friction(&self, body: Option<u32>, [first, last]: [u32; 2]) -> &Friction {
+        let [first, last] = [first as usize, last as usize];
         match body {
             None => {
-                let [first, .., last] = vertices.map(|v| v as usize);
                 let pair = self.pairs.iter().find(|pair| pair.has([first, last]));
-                pair.map_or(self.itself, |pair| pair.coefficients)
+                pair.map_or(&self.itself, |pair| &pair.friction)
             }
             Some(b) => {
-                let has = |pair: &&ObstaclePair| {
-                    pair.obstacle == b && pair.vertices.contains(&(vertices[0] as usize))
-                };
+                let has =
+                    |pair: &&ObstaclePair| pair.obstacle == b && pair.vertices.contains(&first);
                 if let Some(pair) = self.obstacle_pairs.iter().find(has) {
-                    return pair.coefficients;
+                    return &pair.friction;
                 }
-                let own = self.bodies.get(b as usize);
-                own.copied().unwrap_or(Coefficients::FRICTIONLESS)
+                self.bodies.get(b as usize).unwrap_or(&Friction::NONE)
             }
         }
-    }
-
-    /// Friction in a step of `h` seconds with a body, or between the sheets of the first and the last of four
-    /// vertices that meet ([`ActiveContact::vertices`](super::ActiveContact::vertices)); `None` without
-    /// friction and in a step without duration.
-    pub fn friction(&self, body: Option<u32>, vertices: [u32; 4], h: f64) -> Option<Friction> {
-        let c = self.coefficients(body, vertices);
-        if c.is_frictionless() {
-            return None;
-        }
-        Friction::new(c.rest, c.sliding, self.rest_speed * h).ok()
     }
 
     /// # Errors
-    /// [`FrictionError`] unless all coefficients are `0 <= sliding <= rest`, and the speed of rest is
-    /// positive where there is friction.
+    /// [`FrictionError`] unless all friction makes sense ([`Friction::validate`]), and the speed of rest is
+    /// positive where there are coefficients.
     pub fn validate(&self) -> Result<(), FrictionError> {
-        self.all().try_for_each(Coefficients::validate)?;
-        match self.is_frictionless() || self.rest_speed > 0.0 && self.rest_speed.is_finite() {
+        self.all().try_for_each(Friction::validate)?;
+        let smooths =
+            |friction: &Friction| matches!(friction, Friction::Coulomb(_)) && !friction.is_none();
+        match !self.all().any(smooths) || self.rest_speed > 0.0 && self.rest_speed.is_finite() {
             true => Ok(()),
             false => Err(FrictionError::Smoothing(self.rest_speed)),
         }
@@ -126,13 +115,19 @@ impl ContactLaws {
 
     /// Whether there is no friction anywhere.
     pub(crate) fn is_frictionless(&self) -> bool {
-        self.all().all(Coefficients::is_frictionless)
+        self.all().all(Friction::is_none)
     }
 
-    /// The coefficients of all that may touch.
-    fn all(&self) -> impl Iterator<Item = &Coefficients> {
-        let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
-        let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.coefficients);
+    /// Whether there is another law than Coulomb's.
+    pub(crate) fn has_other_laws(&self) -> bool {
+        self.all()
+            .any(|friction| matches!(friction, Friction::Law(_)))
+    }
+
+    /// The friction of all that may touch.
+    fn all(&self) -> impl Iterator<Item = &Friction> {
+        let pairs = self.pairs.iter().map(|pair| &pair.friction);
+        let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.friction);
         let bodies = self.bodies.iter().chain(of_obstacles);
         bodies.chain(pairs).chain([&self.itself])
     }

@@ -30,7 +30,9 @@ mod barrier;
 mod body;
 #[cfg(test)]
 pub(crate) mod contact_tests;
+mod course;
 mod friction;
+mod friction_law;
 #[doc(hidden)]
 pub mod internals;
 mod lagged;
@@ -47,9 +49,13 @@ pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
-pub use friction::{Coefficients, Friction};
+pub(crate) use course::Course;
+pub use friction::{Coefficients, Coulomb};
+pub use friction_law::{Friction, FrictionLaw};
+pub(crate) use friction_law::{check_values, name_of, wrong};
 pub use isosheet_model::CarriedPoint;
-pub use isosheet_model::{BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError};
+pub use isosheet_model::{BarrierError, BodyMotionError, ContactError, ContactPair};
+pub use isosheet_model::{FrictionError, FrictionLawFault};
 pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;

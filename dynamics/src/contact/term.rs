@@ -1,9 +1,11 @@
 //! Contact as a term of the objective of a step.
 
+use super::course::EndVelocity;
 use super::surface_points::CarriedSink;
 use super::{
-    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactSet, ContactState,
-    ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints, advanced,
+    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactLaws, ContactSet,
+    ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion, LaggedFriction, StepSpan,
+    SurfacePoints, advanced, check_values,
 };
 use crate::{SheetModel, State, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
@@ -40,8 +42,11 @@ struct InStep {
     surface: Vec<f64>,
     forces: Vec<f64>,
     friction_before: LaggedFriction,
+    /// What was wrong with a law of friction first.
+    friction_fault: Option<FrictionError>,
     /// The points at the start of the step.
     start: Vec<f64>,
+    velocity: EndVelocity,
     /// The points at the end of the motion that was checked last, and the contacts there.
     end: Vec<f64>,
     ahead: ActiveContacts,
@@ -76,6 +81,7 @@ impl ContactTerm {
         state: &State,
     ) -> Result<(Self, ContactState), ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
+        geometry.laws().validate()?;
         Ok(Self::at_rest_with(geometry, barrier, bodies, state))
     }
 
@@ -108,6 +114,11 @@ impl ContactTerm {
         Ok(Self::with(geometry, barrier, bodies))
     }
 
+    /// The laws of barrier and friction.
+    pub(crate) fn laws(&self) -> &ContactLaws {
+        self.geometry.laws()
+    }
+
     fn with(geometry: Box<dyn Contact>, barrier: BarrierPotential, bodies: BodyMotions) -> Self {
         Self {
             points: geometry.points().cloned().map(Arc::new),
@@ -133,6 +144,17 @@ impl ContactTerm {
     pub(crate) fn motions(&mut self, span: StepSpan) -> &BodyMotions {
         self.bodies.update(self.geometry.as_ref(), span);
         &self.bodies
+    }
+
+    /// What is wrong with the law of friction of a contact, in the step that was tried last: `check` is asked
+    /// about laws that returned nothing wrong.
+    pub(crate) fn friction_fault(
+        &self,
+        check: fn(&dyn FrictionLaw, f64) -> Result<(), FrictionError>,
+    ) -> Option<FrictionError> {
+        let step = self.step.as_ref()?;
+        let known = step.friction_fault.clone();
+        known.or_else(|| step.check_friction(check).err())
     }
 
     /// The contacts that were evaluated last, with friction.
@@ -188,6 +210,8 @@ impl InStep {
             surface: Vec::new(),
             forces: Vec::new(),
             friction_before: LaggedFriction::none(),
+            friction_fault: None,
+            velocity: EndVelocity::default(),
             start_work: 0.0,
             start_energy: 0.0,
             zeros,
@@ -225,6 +249,20 @@ impl InStep {
         ContactTerms::of(&self.state, self.places())
     }
 
+    /// Asks `check` about laws of friction at the iterate, see [`LaggedFriction::check`].
+    fn check_friction(
+        &self,
+        check: fn(&dyn FrictionLaw, f64) -> Result<(), FrictionError>,
+    ) -> Result<(), FrictionError> {
+        let ContactTerms {
+            x,
+            active,
+            friction,
+            ..
+        } = self.terms();
+        friction.check(x, active.bodies(), check)
+    }
+
     /// Adds to `out` (`3V`) what `add` adds at the points.
     fn add_carried(&mut self, out: &mut [f64], add: impl FnOnce(&Self, &mut [f64])) {
         let Some(points) = &self.points else {
@@ -239,13 +277,18 @@ impl InStep {
         self.forces = forces;
     }
 
-    fn set_start(&mut self, geometry: &dyn Contact) {
+    /// Friction is lagged at the start.
+    fn set_start(&mut self, geometry: &dyn Contact, start: &StepStart<'_>) {
+        let laws = geometry.laws();
+        self.friction_fault = None;
+        self.velocity.update(laws, self.points.as_deref(), start);
         let ContactState {
             barrier,
             active,
             friction,
         } = &mut self.state;
-        friction.lag(geometry.laws(), barrier, active, [&self.start; 2]);
+        let course = self.velocity.course(&self.start);
+        friction.lag(laws, barrier, active, course, &self.start);
         self.start_energy = active.barrier_energy(barrier);
         self.start_work = match self.bodies.any_moves() {
             true => active.barrier_work(barrier),
@@ -291,13 +334,17 @@ impl Term for ContactTerm {
         }
         self.at(&start.state.x);
         if let Some(step) = &mut self.step {
-            step.set_start(self.geometry.as_ref());
+            step.set_start(self.geometry.as_ref(), start);
         }
         Ok(())
     }
 
     fn value(&mut self, at: Iterate<'_>) -> Value {
-        Value::of(self.at(at.x).terms().energy())
+        let step = self.at(at.x);
+        if step.friction_fault.is_none() {
+            step.friction_fault = step.check_friction(check_values).err();
+        }
+        Value::of(step.terms().energy())
     }
 
     fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
@@ -412,7 +459,8 @@ impl Term for ContactTerm {
             None => &step.x,
             Some(_) => &step.surface,
         };
-        friction.lag(self.geometry.laws(), barrier, active, [&step.start, x]);
+        let course = step.velocity.course(&step.start);
+        friction.lag(self.geometry.laws(), barrier, active, course, x);
         let has_changed = friction.change_since(&step.friction_before) > settled;
         if !has_changed {
             std::mem::swap(friction, &mut step.friction_before);
@@ -438,12 +486,20 @@ impl Term for ContactTerm {
         }
         let mut settled = std::mem::take(&mut step.friction_before);
         let terms = step.terms();
+        let bodies = terms.active.bodies();
+        if let Err(error) = terms.friction.check(terms.x, bodies, check_values) {
+            return Err(StepError::FrictionLaw {
+                t: start.state.t,
+                error: Box::new(error),
+            });
+        }
         let exchange = terms.exchange(step.start_work, step.start_energy);
         settled.lag(
             self.geometry.laws(),
             terms.barrier,
             terms.active,
-            [&step.start, terms.x],
+            step.velocity.course(&step.start),
+            terms.x,
         );
         let settled_friction = settled.loss(terms.x, terms.active.bodies());
         step.friction_before = settled;

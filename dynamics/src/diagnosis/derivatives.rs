@@ -138,19 +138,37 @@ fn errors(
             let off: Vec<f64> = change.iter().zip(&second).map(|(a, b)| a - b).collect();
             best_second = best_second.min(norm(&off) / norm(&change).max(norm(&second)));
         }
-        if let Some((found, uncertainty)) = settled(&slopes) {
-            let off = (found - slope).abs();
-            // What the differences do not resolve says nothing.
-            if off > 10.0 * uncertainty {
-                let size = (largest * along).max(found.abs());
-                errors.gradient = errors.gradient.max(off / size);
-            }
+        if let Some((found, off)) = resolved(&slopes, slope) {
+            let size = (largest * along).max(found.abs());
+            errors.gradient = errors.gradient.max(off / size);
         }
         if best_second.is_finite() {
             errors.hessian = errors.hessian.max(best_second);
         }
     }
     errors
+}
+
+/// The difference of a derivative from the most certain of its central differences, after that itself; none
+/// where the differences do not resolve it.
+fn resolved(differences: &[(f64, f64)], derivative: f64) -> Option<(f64, f64)> {
+    let (found, uncertainty) = settled(differences)?;
+    let off = (found - derivative).abs();
+    // What the differences do not resolve says nothing.
+    (off > 10.0 * uncertainty).then_some((found, off))
+}
+
+/// By how much the derivative of a function of a number differs from central differences at `x > 0`, as a
+/// part of the larger of the two; zero where the differences do not resolve it.
+pub(super) fn error_at(x: f64, f: impl Fn(f64) -> f64, derivative: f64) -> f64 {
+    let differences = DISPLACEMENTS.map(|part| {
+        let h = part * x;
+        let [ahead, behind] = [f(x + h), f(x - h)];
+        let noise = f64::EPSILON * (ahead.abs() + behind.abs() + x * derivative.abs()) / h;
+        ((ahead - behind) / (2.0 * h), noise)
+    });
+    let part = |(found, off): (f64, f64)| off / derivative.abs().max(found.abs());
+    resolved(&differences, derivative).map_or(0.0, part)
 }
 
 /// Of values with their noise the most certain one, and how uncertain it is: by the noise, or by how much it

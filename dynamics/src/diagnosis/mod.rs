@@ -2,6 +2,7 @@
 
 pub(crate) mod blocked;
 pub(crate) mod derivatives;
+pub(crate) mod friction_law;
 pub(crate) mod infeasibility;
 pub(crate) mod potentials;
 pub(crate) mod pressing;

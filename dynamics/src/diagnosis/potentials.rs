@@ -2,18 +2,18 @@
 
 use super::derivatives::check_derivatives;
 use crate::SheetModel;
+use crate::contact::name_of;
 use isosheet_materials::hessian::HessianSink;
 use isosheet_materials::potential::{At, Memories, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
 use isosheet_model::{BadPotential, PotentialFault};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
-use std::fmt::Write;
 
 /// Part of the gradient by which it may differ from central differences of the energy before it is called
 /// wrong: these err by some 1e-9 where energies are smooth, and a gradient that is wrong in the third digit
 /// changes no result that is measured.
-const WRONG: f64 = 1e-3;
+pub(super) const WRONG: f64 = 1e-3;
 
 /// Whether gradients are compared with differences of the energies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) fn find_fault(
     let all = model.potentials_at(t, x, memories).enumerate();
     let mut faults = all.filter_map(|(index, (potential, at))| {
         let fault = fault_of(potential, model, at, differences)?;
-        let name = name_of(potential);
+        let name = name_of(&potential);
         Some(BadPotential { index, name, fault })
     });
     faults.next()
@@ -75,23 +75,6 @@ fn fault_of(
     }
     let part = check_derivatives(potential, topology, at).gradient;
     (part > WRONG).then_some(PotentialFault::Gradient { part })
-}
-
-/// The type of a potential, as it begins to name itself.
-fn name_of(potential: &dyn Potential) -> String {
-    /// Takes a word, and then no more.
-    struct Word(String);
-    impl Write for Word {
-        fn write_str(&mut self, text: &str) -> std::fmt::Result {
-            let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
-            self.0.push_str(&text[..end.unwrap_or(text.len())]);
-            end.map_or(Ok(()), |_| Err(std::fmt::Error))
-        }
-    }
-    let mut word = Word(String::new());
-    // It ends with an error as soon as it has the word.
-    let _ = write!(word, "{potential:?}");
-    word.0
 }
 
 fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {

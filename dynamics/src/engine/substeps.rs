@@ -5,6 +5,7 @@ mod held;
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
+use crate::diagnosis::friction_law::check_at;
 use crate::diagnosis::infeasibility::infeasibility;
 use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::diagnosis::pressing::pressing;
@@ -161,6 +162,10 @@ impl Engine {
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
                 let term = ContactTerm::resume(contact, barrier, &engine.model, state)?;
+                let contacts = engine.motion.contacts.as_mut();
+                if contacts.is_some_and(|c| !c.friction.take_laws(term.laws())) {
+                    return Err(CheckpointError::Friction.into());
+                }
                 engine.objective.set(term);
             }
             (_, barrier) => {
@@ -402,11 +407,13 @@ impl Substeps<'_, '_> {
     fn stop(&mut self, cause: StepError) -> Stop {
         if matches!(
             cause,
-            StepError::NonFiniteForce { .. } | StepError::Potential { .. }
+            StepError::NonFiniteForce { .. }
+                | StepError::Potential { .. }
+                | StepError::FrictionLaw { .. }
         ) {
             return Stop::Error(cause);
         }
-        if let Some(bad) = self.wrong_potential() {
+        if let Some(bad) = self.wrong_potential().or_else(|| self.wrong_friction()) {
             return Stop::Error(bad);
         }
         let t = self.engine.state().t;
@@ -466,6 +473,15 @@ impl Substeps<'_, '_> {
         Some(StepError::Potential {
             t: state.t,
             bad: Box::new(bad),
+        })
+    }
+
+    /// The error of a law of friction from outside that is wrong at a contact, if there is one.
+    fn wrong_friction(&self) -> Option<StepError> {
+        let term: &ContactTerm = self.engine.objective.get()?;
+        Some(StepError::FrictionLaw {
+            t: self.engine.state().t,
+            error: Box::new(term.friction_fault(check_at)?),
         })
     }
 

@@ -55,6 +55,9 @@ pub enum CheckpointError {
         /// What differs.
         what: &'static str,
     },
+    /// The contacts have other laws of friction.
+    #[error("the laws of friction of the contacts are not those of the checkpoint")]
+    Friction,
     /// An array has the wrong length.
     #[error("{what} of the checkpoint has {found} values where the model needs {expected}")]
     Length {
@@ -127,7 +130,9 @@ impl Advice for CheckpointError {
             Self::OtherSize { .. } | Self::OtherSheet { .. } => {
                 Some("supply the model that the checkpoint was made with")
             }
-            Self::Contact { .. } => Some("supply the contact that the checkpoint was made with"),
+            Self::Contact { .. } | Self::Friction => {
+                Some("supply the contact that the checkpoint was made with")
+            }
             Self::Engine { .. } => Some("resume it with what moved the sheet before"),
             Self::Decode(..) | Self::Encode(..) | Self::Length { .. } => None,
         }

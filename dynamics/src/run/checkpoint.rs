@@ -7,7 +7,7 @@ use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 20;
+const VERSION: u32 = 21;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";

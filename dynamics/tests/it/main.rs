@@ -5,6 +5,7 @@ mod creases;
 mod damping;
 mod dashpots;
 mod elastic_sheet;
+mod friction_law;
 mod glue;
 mod hands;
 mod immobile;

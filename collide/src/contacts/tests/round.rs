@@ -94,7 +94,13 @@ impl Scene {
         let set = ContactSet::of(&mut self.contacts, motion(&bodies, [1.0; 2], &p, &zero));
         let active = ActiveContacts::at(&self.contacts, &set, 1.0, &p);
         let mut friction = LaggedFriction::none();
-        friction.lag(self.contacts.laws(), &barrier, &active, [&p0, &p]);
+        friction.lag(
+            self.contacts.laws(),
+            &barrier,
+            &active,
+            Course::from_start(&p0, 0.02),
+            &p,
+        );
         (set, barrier, friction)
     }
 

@@ -132,7 +132,7 @@ impl Advice for BarrierError {
     }
 }
 
-/// Coefficients that make no sense.
+/// Friction that makes no sense.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrictionError {
@@ -162,6 +162,66 @@ pub enum FrictionError {
     /// The smoothing distance is not positive.
     #[error("the smoothing distance is {0} m")]
     Smoothing(f64),
+    /// A law of friction from outside cannot be used.
+    #[error("the law of friction `{name}` cannot be used: at {speed} m/s {fault}", speed = brief(*speed))]
+    Law {
+        /// Its type, as [`Debug`](std::fmt::Debug) names it.
+        name: String,
+        /// Sliding speed, metres per second.
+        speed: f64,
+        /// What is wrong there.
+        fault: FrictionLawFault,
+    },
+}
+
+/// What is wrong with a law of friction at a sliding speed.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrictionLawFault {
+    /// A value is not finite.
+    #[error("its {quantity} is {value}", value = given(*value))]
+    NotFinite {
+        /// Which one.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The coefficient is negative.
+    #[error("its coefficient is {value}", value = given(*.0))]
+    Negative(f64),
+    /// The coefficient at rest is not zero.
+    #[error("its coefficient is {value} in place of zero", value = given(*.0))]
+    Rest(f64),
+    /// The coefficient falls from rest.
+    #[error("its slope is {value}, and at rest it is not negative", value = given(*.0))]
+    Falls(f64),
+    /// The coefficient is not the derivative of the integral, with the difference as a part of it.
+    #[error("its coefficient differs from the derivative of its integral by the part {part}", part = brief(*.0))]
+    Integral(f64),
+    /// The slope is not the derivative of the coefficient, with the difference as a part of it.
+    #[error("its slope differs from the derivative of its coefficient by the part {part}", part = brief(*.0))]
+    Slope(f64),
+}
+
+impl Advice for FrictionLawFault {
+    fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotFinite { .. } => "let the law return numbers at all speeds of at least 0",
+            Self::Negative(..) => {
+                "let the coefficient be positive: friction acts against the sliding"
+            }
+            Self::Rest(..) => {
+                "let the coefficient rise from zero over the speeds that count as rest"
+            }
+            Self::Falls(..) => "let the coefficient rise from rest",
+            Self::Integral(..) => {
+                "let the integral be that of the coefficient, and compare the two by `check_friction_law`"
+            }
+            Self::Slope(..) => {
+                "let the slope be the derivative of the coefficient, or check other speeds than those of kinks"
+            }
+        })
+    }
 }
 
 impl Advice for FrictionError {
@@ -172,6 +232,7 @@ impl Advice for FrictionError {
             Self::Smoothing(..) => {
                 Some("give a positive length, the speed that counts as rest times the step")
             }
+            Self::Law { fault, .. } => fault.advice(),
         }
     }
 }

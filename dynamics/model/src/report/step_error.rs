@@ -1,6 +1,6 @@
 //! Errors of steps.
 
-use crate::report::contact_error::BodyMotionError;
+use crate::report::contact_error::{BodyMotionError, FrictionError};
 use crate::report::engine_error::EngineError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::potential_fault::BadPotential;
@@ -223,6 +223,14 @@ pub enum StepError {
         /// Which one, and why.
         bad: Box<BadPotential>,
     },
+    /// A law of friction from outside cannot be used.
+    #[error("at t = {t} s {error}", t = brief(*t))]
+    FrictionLaw {
+        /// Time, seconds.
+        t: f64,
+        /// Which one, and why.
+        error: Box<FrictionError>,
+    },
     /// A step of a damped method gains energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
@@ -395,6 +403,7 @@ impl Advice for StepError {
             | Self::Contact { .. } => Some("take a smaller step"),
             Self::Refused { refused, .. } => refused.remedy,
             Self::Potential { bad, .. } => bad.advice(),
+            Self::FrictionLaw { error, .. } => error.advice(),
             Self::StiffForce { .. } => Some(
                 "take a smaller step, or make it an `ImplicitForce`, which is part of the search",
             ),

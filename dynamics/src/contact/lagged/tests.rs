@@ -20,7 +20,7 @@ impl CouplingSink for Dense {
     }
 }
 
-fn contact(weights: [f64; 4], normal: [f64; 3], force: f64, law: Friction) -> FrictionContact {
+fn contact(weights: [f64; 4], normal: [f64; 3], force: f64, law: Coulomb) -> FrictionContact {
     FrictionContact {
         key: ContactKey {
             body: None,
@@ -33,7 +33,7 @@ fn contact(weights: [f64; 4], normal: [f64; 3], force: f64, law: Friction) -> Fr
         force,
         point: Vector3::zeros(),
         point_start: Vector3::zeros(),
-        law,
+        law: LawOfContact::Coulomb(law),
     }
 }
 
@@ -41,6 +41,7 @@ fn friction(contacts: Vec<FrictionContact>) -> LaggedFriction {
     LaggedFriction {
         x0: vec![0.0; 12],
         contacts,
+        ..LaggedFriction::none()
     }
 }
 
@@ -57,11 +58,11 @@ proptest! {
         part in 0.01..3.0_f64, rest in 0.1..1.0_f64, sliding in 0.0..=1.0_f64, a in 0.1..0.4_f64, b in 0.1..0.4_f64,
     ) {
         let e = 10.0_f64.powf(size);
-        let law = Friction::new(rest, rest * sliding, e).unwrap();
+        let law = Coulomb::new(rest, rest * sliding, e).unwrap();
         let contact = contact([1.0, -a, -b, a + b - 1.0], normal, 7.0, law);
         let friction = friction(vec![contact]);
         let x = x.map(|x| part * e * x);
-        let y = contact.slip(&friction.x0, &x, &[]).norm() / e;
+        let y = contact.slip(&friction.x0, &x, &[], 1.0).norm() / e;
         // The curvature has kinks at the seams and turns quickly next to rest.
         prop_assume!((y - 1.0).abs() > 1e-3 && (y - 3.0).abs() > 1e-3 && y > 0.05);
         let gradient = |x: &[f64]| {
@@ -100,7 +101,7 @@ proptest! {
     fn force_is_tangential_opposes_the_slip_and_sums_to_nothing(
         x in positions(), normal in proptest::array::uniform3(0.2..1.0_f64),
     ) {
-        let contact = contact([1.0, -0.2, -0.5, -0.3], normal, 3.0, Friction::new(0.5, 0.4, 1e-3).unwrap());
+        let contact = contact([1.0, -0.2, -0.5, -0.3], normal, 3.0, Coulomb::new(0.5, 0.4, 1e-3).unwrap());
         let friction = friction(vec![contact]);
         let mut g = [0.0; 12];
         friction.add_gradient(&x, &[], 1.0, &mut g);
@@ -112,7 +113,7 @@ proptest! {
         let power: f64 = g.iter().zip(&x).map(|(g, x)| g * x).sum();
         prop_assert!(power >= 0.0);
         // Sliding far beyond the passage: kinetic coefficient times normal force.
-        let y = contact.slip(&friction.x0, &x, &[]).norm();
+        let y = contact.slip(&friction.x0, &x, &[], 1.0).norm();
         if y > 3e-3 {
             prop_assert!((forces[0].norm() - 0.4 * 3.0).abs() < 1e-12);
             prop_assert!((friction.loss(&x, &[]) - 0.4 * 3.0 * y).abs() < 1e-12);
@@ -123,7 +124,7 @@ proptest! {
 /// A sheet at rest on a belt that moves by `d` slides by `-d`: the belt works, all of it is lost.
 #[test]
 fn a_belt_under_a_sheet_at_rest_loses_its_work() {
-    let law = Friction::new(0.5, 0.5, 1e-4).unwrap();
+    let law = Coulomb::new(0.5, 0.5, 1e-4).unwrap();
     let motion = StepMotion::new(Isometry3::identity(), Isometry3::translation(0.1, 0.0, 0.0));
     let motion = BodyMotion {
         material: motion,
@@ -145,9 +146,51 @@ fn a_belt_under_a_sheet_at_rest_loses_its_work() {
     assert!((force[0] - 1.0).abs() < 1e-15, "taken along: {force:?}");
 }
 
+/// A law in metres per second at velocities at the end of a step is Coulomb's law in metres a step.
+#[test]
+fn other_laws_have_speeds_in_metres_per_second() {
+    let (tau, rest_speed) = (1e-2, 1e-2);
+    let coulomb = Coulomb::new(0.5, 0.3, rest_speed * tau).unwrap();
+    let by_distance = friction(vec![contact(
+        [1.0, -0.2, -0.5, -0.3],
+        [0.3, 0.2, 1.0],
+        3.0,
+        coulomb,
+    )]);
+    let mut by_speed = by_distance.clone();
+    by_speed.contacts[0].law = LawOfContact::Other {
+        number: 0,
+        tau,
+        part: 1.0,
+    };
+    by_speed.others = vec![Arc::new(Coulomb::new(0.5, 0.3, rest_speed).unwrap())];
+    // From other positions than those at the start.
+    let start: [f64; 12] = std::array::from_fn(|i| 1e-3 * (i as f64).sin());
+    by_speed.rest = start.to_vec();
+    for part in [0.5, 1.7, 5.0] {
+        let dx: [f64; 12] = std::array::from_fn(|i| part * 1e-4 * (2.0 * i as f64).cos());
+        let x: [f64; 12] = std::array::from_fn(|i| start[i] + dx[i]);
+        let found = [(&by_distance, &dx), (&by_speed, &x)].map(|(friction, x)| {
+            let (mut gradient, mut hessian) = ([0.0; 12], Dense(nalgebra::SMatrix::zeros()));
+            friction.add_gradient(x, &[], 1.0, &mut gradient);
+            friction.add_hessian(x, &[], &mut hessian);
+            (friction.energy(x, &[]), gradient, hessian.0)
+        });
+        let [(e0, g0, h0), (e1, g1, h1)] = found;
+        assert!((e0 - e1).abs() < 1e-12 * e0.abs(), "{e0} {e1}");
+        assert!(g0.iter().zip(&g1).all(|(a, b)| (a - b).abs() < 1e-10));
+        assert!((h0 - h1).norm() < 1e-10 * h0.norm());
+        let speed = by_speed.sliding(&by_speed.contacts[0], &x, &[]).speed();
+        let distance = by_distance
+            .sliding(&by_distance.contacts[0], &dx, &[])
+            .speed();
+        assert!((speed * tau - distance).abs() < 1e-12 * distance);
+    }
+}
+
 #[test]
 fn changes_are_relative_to_the_largest_force() {
-    let law = Friction::new(0.5, 0.5, 1e-4).unwrap();
+    let law = Coulomb::new(0.5, 0.5, 1e-4).unwrap();
     let at = |number: u32, force: f64| {
         let mut c = contact([1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0], force, law);
         c.key.pair[0] = number;
