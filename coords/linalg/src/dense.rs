@@ -1,7 +1,7 @@
 //! Dense kernels of the multifrontal factorisation, for blocks of a few dozen columns.
 //!
 //! Matrices are stored by columns. The kernels take three columns at a time, because the unknowns of sparse
-//! matrices come in threes, the coordinates of a vertex, and up to four registers of rows, so that sums stay
+//! matrices come in threes, the coordinates of a vertex, and up to three registers of rows, so that sums stay
 //! in registers.
 
 use pulp::Simd;
@@ -155,12 +155,11 @@ impl Left<'_> {
         let rows = self.height - self.first_row;
         let lanes = S::F64_LANES;
         let mut i = 0;
-        while i + 4 * lanes <= rows {
-            self.tile::<S, N, 4>(simd, i, out, stride, onto);
-            i += 4 * lanes;
+        while i + 3 * lanes <= rows {
+            self.tile::<S, N, 3>(simd, i, out, stride, onto);
+            i += 3 * lanes;
         }
         match (rows - i) / lanes {
-            3 => self.tile::<S, N, 3>(simd, i, out, stride, onto),
             2 => self.tile::<S, N, 2>(simd, i, out, stride, onto),
             1 => self.tile::<S, N, 1>(simd, i, out, stride, onto),
             _ => {}

@@ -6,6 +6,7 @@
 
 use super::plan::{Front, Plan, Subtree};
 use super::shared::{FrontValues, Job};
+use pulp::{Arch, Simd, WithSimd};
 use std::convert::Infallible;
 
 /// Columns of a supernode that are applied together. Coordinates of a vertex are eliminated one after
@@ -51,6 +52,7 @@ struct Supernode<'a> {
 
 impl<'a> Supernode<'a> {
     /// Of a front, among unknowns of which the `first` is the first.
+    #[inline(always)]
     fn of(factor: Factor<'a>, front: &Front, first: usize) -> Self {
         Self {
             start: front.start - first,
@@ -62,6 +64,7 @@ impl<'a> Supernode<'a> {
     }
 
     /// Column `j`: the entries below the diagonal in the supernode's own rows, and those in the rows below.
+    #[inline(always)]
     fn column(&self, j: usize) -> (&'a [f64], &'a [f64]) {
         let height = self.columns + self.rows.len();
         let column = &self.values[j * height..(j + 1) * height];
@@ -69,11 +72,13 @@ impl<'a> Supernode<'a> {
         (&own[j + 1..], below)
     }
 
+    #[inline(always)]
     fn below(&self, j: usize) -> &'a [f64] {
         self.column(j).1
     }
 
     /// Solves for the supernode's own unknowns in `L x = b` and takes their parts off the rows below.
+    #[inline(always)]
     fn forward(&self, x: &mut [f64], sums: &mut [f64]) {
         let own = &mut x[self.start..self.start + self.columns];
         for j in 0..self.columns {
@@ -106,6 +111,7 @@ impl<'a> Supernode<'a> {
     }
 
     /// Solves for the supernode's own unknowns in `L^T x = b`, those of the rows below being known.
+    #[inline(always)]
     fn backward(&self, x: &mut [f64], known: &mut [f64]) {
         let known = &mut known[..self.rows.len()];
         for (k, i) in known.iter_mut().zip(self.rows) {
@@ -121,6 +127,7 @@ impl<'a> Supernode<'a> {
 }
 
 /// Inner product, in [`LANES`] sums.
+#[inline(always)]
 fn inner(a: &[f64], b: &[f64]) -> f64 {
     let (a, a_rest) = a.as_chunks::<LANES>();
     let (b, b_rest) = b.as_chunks::<LANES>();
@@ -162,15 +169,54 @@ impl Job<1> for Pass<'_> {
     ) -> Result<(), Infallible> {
         let local = &mut part[subtree.local.start - start..subtree.local.end - start];
         let (x, scratch) = local.split_at_mut(subtree.columns.len() + subtree.above.len());
-        let fronts = &self.factor.plan.fronts[subtree.fronts.clone()];
-        let supernodes = fronts
-            .iter()
-            .map(|front| Supernode::of(self.factor, front, subtree.columns.start));
-        match self.direction {
-            Direction::Forward => supernodes.for_each(|s| s.forward(x, scratch)),
-            Direction::Backward => supernodes.rev().for_each(|s| s.backward(x, scratch)),
-        }
+        Arch::new().dispatch(Sweep {
+            factor: self.factor,
+            fronts: &self.factor.plan.fronts[subtree.fronts.clone()],
+            first: subtree.columns.start,
+            direction: self.direction,
+            x,
+            scratch,
+        });
         Ok(())
+    }
+}
+
+/// A pass over fronts one after another, by the vector instructions of the processor. They change no result:
+/// sums have an order of their own.
+struct Sweep<'a, F> {
+    factor: Factor<'a>,
+    fronts: F,
+    /// The first of the unknowns.
+    first: usize,
+    direction: Direction,
+    /// Values of the unknowns.
+    x: &'a mut [f64],
+    /// Room for the rows of a front.
+    scratch: &'a mut [f64],
+}
+
+impl<'a, F> WithSimd for Sweep<'_, F>
+where
+    F: IntoIterator<Item = &'a Front, IntoIter: DoubleEndedIterator>,
+{
+    type Output = ();
+
+    // (What the methods of iterators call is compiled without these instructions.)
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let fronts = self.fronts.into_iter();
+        match self.direction {
+            Direction::Forward => {
+                for front in fronts {
+                    Supernode::of(self.factor, front, self.first).forward(self.x, self.scratch);
+                }
+            }
+            Direction::Backward => {
+                for front in fronts.rev() {
+                    Supernode::of(self.factor, front, self.first).backward(self.x, self.scratch);
+                }
+            }
+        }
     }
 }
 
@@ -183,10 +229,15 @@ pub(super) fn solve(factor: Factor<'_>, x: &mut [f64], locals: &mut [f64]) {
     let pass = |direction, locals: &mut [f64]| {
         let Ok(()) = Pass { factor, direction }.run_all(plan, [locals]);
     };
-    let trunk = || {
-        plan.trunk
-            .iter()
-            .map(|&s| Supernode::of(factor, &plan.fronts[s as usize], 0))
+    let trunk = |direction, x: &mut [f64], scratch: &mut [f64]| {
+        Arch::new().dispatch(Sweep {
+            factor,
+            fronts: plan.trunk.iter().map(|&s| &plan.fronts[s as usize]),
+            first: 0,
+            direction,
+            x,
+            scratch,
+        });
     };
     for tree in &plan.subtrees {
         let (own, rest) = locals[tree.local.clone()].split_at_mut(tree.columns.len());
@@ -201,8 +252,8 @@ pub(super) fn solve(factor: Factor<'_>, x: &mut [f64], locals: &mut [f64]) {
         }
     }
     let scratch = &mut locals[plan.trunk_scratch.clone()];
-    trunk().for_each(|s| s.forward(x, scratch));
-    trunk().rev().for_each(|s| s.backward(x, scratch));
+    trunk(Direction::Forward, x, scratch);
+    trunk(Direction::Backward, x, scratch);
     for tree in &plan.subtrees {
         let known = &mut locals[tree.local.start + tree.columns.len()..];
         for (&i, known) in plan.above[tree.above.clone()].iter().zip(known) {
