@@ -487,8 +487,7 @@ impl Limited for ElasticSheet {
 
     /// Whether every face keeps a part of its distance from the limit.
     fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        let stays = |face: &Face| face.stays_within(at, end);
-        self.faces.iter().all(stays)
+        self.evaluated.stay_within(&self.faces, at, end)
     }
 
     /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.

@@ -61,17 +61,28 @@ impl EvaluatedFaces {
     /// Largest part of the displacement `dx` along which every face keeps a part of its distance from the
     /// limit.
     pub(super) fn part_within(&self, faces: &[Face], at: At<'_>, dx: &[f64]) -> f64 {
-        let mut part = 1.0;
-        let course = |k: usize| faces[k].course(at, dx);
-        let cut = |_, course: &Option<StrainCourse>| {
-            if let Some(course) = course {
-                part = course.safe_part(part);
-            }
-        };
-        let work = work(faces, COURSE_TIME);
-        let room = &self.courses;
-        room.with(|room| in_order(room, work, course, cut));
-        part
+        self.evaluate(faces, at, |states| {
+            let mut part = 1.0;
+            let course = |k: usize| faces[k].course(&states[k].0, dx);
+            let cut = |_, course: &Option<StrainCourse>| {
+                if let Some(course) = course {
+                    part = course.safe_part(part);
+                }
+            };
+            let work = work(faces, COURSE_TIME);
+            let room = &self.courses;
+            room.with(|room| in_order(room, work, course, cut));
+            part
+        })
+    }
+
+    /// Whether every face keeps a part of its distance from the limit in a displacement to `end`, where the
+    /// faces are evaluated.
+    pub(super) fn stay_within(&self, faces: &[Face], at: At<'_>, end: &[f64]) -> bool {
+        self.evaluate(faces, At { x: end, ..at }, |states| {
+            let mut all = faces.iter().zip(states);
+            all.all(|(face, (end, _))| face.stays_within(at, end))
+        })
     }
 
     /// Adds the Hessian, with a part of the force densities of the edges.

@@ -374,11 +374,12 @@ impl Face {
         limit - KEPT_MARGIN * (limit - strain)
     }
 
-    /// Whether a displacement from where it is to `end` ends within the limit, and keeps a part of the
-    /// distance from it.
-    pub(super) fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        let ends = [self.strain(at), self.strain(At { x: end, ..at })];
-        ends[1].norm() <= self.bound(ends[0].norm())
+    /// Whether a displacement from where it is ends within the limit, and keeps a part of the distance from it;
+    /// `end` is the face there.
+    pub(super) fn stays_within(&self, at: At<'_>, end: &Strained) -> bool {
+        let strain = end.strain.norm();
+        // Most faces stay within what any strain at the start allows.
+        strain <= self.bound(0.0) || strain <= self.bound(self.strain(at).norm())
     }
 
     /// Its part of the Hessian; `part` says which part of the force density of an edge counts for its
@@ -416,19 +417,22 @@ impl Face {
         }
     }
 
-    /// The strains along the displacement `dx`, unless all of it keeps the distance from the limit but for
-    /// [`KEPT_MARGIN`] of it.
-    pub(super) fn course(&self, at: At<'_>, dx: &[f64]) -> Option<StrainCourse> {
-        let growth = self.swelling.growth(at.t);
-        let vectors = self.edge_vectors(at.x);
+    /// The strains along the displacement `dx` from a state, unless all of it keeps the distance from the limit
+    /// but for [`KEPT_MARGIN`] of it.
+    pub(super) fn course(&self, at: &Strained, dx: &[f64]) -> Option<StrainCourse> {
+        let Strained {
+            growth,
+            vectors,
+            strain: e0,
+            ..
+        } = at;
         let changes = self.edge_vectors(dx);
         let first = Vector3::from_fn(|k, _| vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
-        let [e1, e2] = [first, second].map(|errors| self.strains * errors / growth);
-        let e0 = self.strain(at);
+        let [e1, e2] = [first, second].map(|errors| self.strains * errors / *growth);
         let bound = self.bound(e0.norm());
         let course = StrainCourse {
-            strains: [e0, e1, e2],
+            strains: [*e0, e1, e2],
             bound,
         };
         (!course.is_within(1.0)).then_some(course)
