@@ -16,9 +16,9 @@ use std::fmt;
 /// A function of time: a number for a value that stays the same, or a `Course`. A displacement is in metres,
 /// an angle in degrees, a load in newtons.
 ///
-/// The method evaluates the function at the end of each step. A function that turns back within a step by more
-/// than a quarter of its range is refused; a sine with three steps in a period turns back by that much. An
-/// angle of a motion that changes by more than half a turn in a step is refused, too.
+/// The method evaluates the function at the end of each step. A function that turns back within a step by
+/// more than a quarter of its range is refused; a sine with three steps in a period turns back by that much.
+/// An angle of a motion that changes by more than half a turn in a step is refused, too.
 ///
 /// ```toml
 /// [[forces.load]]
