@@ -121,7 +121,7 @@ impl Composing {
                     folder.display()
                 );
                 return Err(Failure::misuse(message).remedy(
-                    "write the scene to another folder; that of the run has a copy, `scene.toml`",
+                    "write the scene to another folder; the folder of the run has a copy, `scene.toml`",
                 ));
             }
         }
@@ -215,11 +215,11 @@ impl Composing {
             (Message::Scene(_), Some(scene)) => {
                 let scene = scene.display();
                 failure.remedy(format!(
-                    "the keys are those of {scene}: edit it, and run it by `isosheet simulate {scene}`"
+                    "these keys are in {scene}: edit it, and run it by `isosheet simulate {scene}`"
                 ))
             }
             (Message::Scene(_), None) => failure.remedy(
-                "the keys are those of the scene: write it by `--scene FILE`, edit it, and run it by `isosheet simulate FILE`",
+                "these keys are in the scene: write it by `--scene FILE`, edit it, and run it by `isosheet simulate FILE`",
             ),
             _ => failure,
         }

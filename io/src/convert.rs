@@ -148,7 +148,7 @@ impl Convert {
                 return Err(wrong(message, FOLDER));
             }
             if self.no_bodies {
-                let message = "which vertices are those of bodies is not in the file";
+                let message = "the file does not say which vertices belong to bodies";
                 return Err(wrong(message, FOLDER));
             }
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
@@ -267,7 +267,7 @@ impl Convert {
         } else if gets_frames(input) {
             "the files of single frames would be written into the folder of the run".to_owned()
         } else if gets_frames(&input.join("obj")) {
-            "the files of single frames would replace those of the run itself".to_owned()
+            "the files of single frames would replace files of the run itself".to_owned()
         } else {
             return refuse_file_of_run(output);
         };

@@ -62,7 +62,7 @@ fn ending(sweep: &Sweep, done: usize, mut failed: Vec<Failed>) -> Done {
     failed.sort_by_key(|f| f.run.number);
     let stopped = failed.iter().any(|f| f.code == Code::Interrupted);
     if done < sweep.len() || stopped {
-        let message = "the sweep was stopped, or a run of it was";
+        let message = "the sweep or one of its runs was stopped";
         return Err(Failure::new(Code::Interrupted, message).remedy("the same command continues"));
     }
     let Some(first) = failed.first() else {

@@ -171,7 +171,7 @@ impl fmt::Display for DrawingReport {
             let [x, y] = self.size.map(|length| mm(factor * length));
             writeln!(
                 f,
-                "note: by the unit that was given the sheet is {w} by {h}, and by that of the file {x} by {y}"
+                "note: the sheet is {w} by {h} in the given unit, and {x} by {y} in the unit of the file"
             )?;
         }
         Ok(())

@@ -130,14 +130,14 @@ impl Summary {
         let vibration = self.vibration.filter(|v| v.slowing() > Self::SLOWING);
         if let Some(vibration) = vibration {
             let message = format!(
-                "the sheet swings faster than steps of {} s follow, {vibration}: they make that about {} % slower and damp \
-                 it; with `method.step = {}` it is right to 1 %",
+                "steps of {} s are too long for a vibration of the sheet, {vibration}: they lower its frequency by about {} % \
+                 and damp it; with `method.step = {}` its frequency is right to 1 %",
                 brief(vibration.step),
                 brief(100.0 * vibration.slowing()),
                 brief(vibration.step_for(0.01)),
             );
-            let remedy = "take a smaller `method.step`, or ask for a `method.accuracy`, if it matters how the sheet swings; \
-                          where it comes to rest does not depend on that";
+            let remedy = "take a smaller `method.step`, or ask for a `method.accuracy`, if the vibration matters; the state of \
+                          rest does not depend on the step";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(incidence) = self.incidence.filter(|i| i.angle > Self::SEPARATION) {

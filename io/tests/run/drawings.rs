@@ -708,23 +708,24 @@ fn a_unit_that_is_not_that_of_the_file_is_told() {
     let spacing = ["--spacing", "20mm"];
     let (_, said) = meshed(dir, "a.svg", &spacing);
     assert!(said.contains(", 211.5 mm by 50 mm\n"), "{said}");
-    assert!(!said.contains("by that of the file"), "{said}");
+    assert!(!said.contains("in the unit of the file"), "{said}");
     let (_, said) = meshed(dir, "a.svg", &["--spacing", "50mm", "--unit", "mm"]);
-    let told = "the sheet is 599.53 mm by 141.73 mm, and by that of the file 211.5 mm by 50 mm";
+    let told =
+        "599.53 mm by 141.73 mm in the given unit, and 211.5 mm by 50 mm in the unit of the file";
     assert!(said.contains(told), "{said}");
     let (_, said) = meshed(dir, "a.svg", &["--spacing", "20mm", "--unit", "pt"]);
-    assert!(!said.contains("by that of the file"), "{said}");
+    assert!(!said.contains("in the unit of the file"), "{said}");
     // A page of pixels has no unit that could be another one.
     let pixels = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100' fill='none' stroke='black'>\
                   <rect width='100' height='50'/></svg>";
     fs::write(dir.join("a.svg"), pixels).unwrap();
     let (_, said) = meshed(dir, "a.svg", &["--spacing", "20mm", "--unit", "mm"]);
-    assert!(!said.contains("by that of the file"), "{said}");
+    assert!(!said.contains("in the unit of the file"), "{said}");
     let dxf = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n1\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0\n20\n0\n40\n\
                50\n0\nENDSEC\n0\nEOF\n";
     fs::write(dir.join("a.dxf"), dxf).unwrap();
     let (_, said) = meshed(dir, "a.dxf", &["--spacing", "20mm", "--unit", "mm"]);
-    let told = "the sheet is 100 mm by 100 mm, and by that of the file 2540 mm by 2540 mm";
+    let told = "100 mm by 100 mm in the given unit, and 2540 mm by 2540 mm in the unit of the file";
     assert!(said.contains(told), "{said}");
 }
 

@@ -16,37 +16,39 @@ mesh = { rectangle = { width = 0.21, height = 0.03, columns = 28, rows = 4 } }
 material = \"office paper\"
 ```
 
-The name gives mass, membrane stiffness, flexural rigidity, Poisson's ratio and the largest strain, and
-makes the sheet elastic; keys beside it, such as `density` or `bending`, replace what it gives. `isometry =
-\"rods\"` beside it makes the sheet one of rigid rods with mass and bending stiffness of the material.
-`isosheet check` prints the numbers. For a metal or film that is not in the table, `material = { youngs =
-2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }` computes them: mass `density thickness`, membrane
-stiffness `E h = youngs thickness` and rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
+The name gives the sheet its mass, membrane stiffness, flexural rigidity, Poisson's ratio and largest strain,
+and makes it elastic. Keys beside it, such as `density` or `bending`, override these values.
+`isometry = \"rods\"` beside it makes a sheet of rigid rods with the mass and bending stiffness of the material.
+`isosheet check` prints the numbers. A metal or film that is not in the table is `material = { youngs =
+2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }`. It has the mass `density thickness`, the membrane
+stiffness `E h = youngs thickness` and the rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
 
-In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` are the same numbers, and
-`Material::isotropic` computes those of a plate.
+In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` have these numbers, and
+`Material::isotropic` computes the numbers of a plate.
 
-**Know before use.** The numbers of metals and films are good to a few per cent for the thickness given,
-which is a common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, and the
-stiffness of paper falls with moisture. The rigidity of office paper, card, cloth
-and leather is that of bending tests and no function of thickness, as their fibres move against one another;
-that of the other papers is eight to nine tenths of a plate's. The sources say what is typical or assumed.
-The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a
-mesh is too coarse for its bends.
+**Know before use.** The numbers of metals and films are good to a few per cent for the thickness given, which
+is a common one. The numbers of paper, cloth and leather are typical: sorts differ by a factor of two, and the
+stiffness of paper falls with moisture. Bending tests give the rigidity of office paper, card, cloth and
+leather; it is no function of thickness, since fibres move against one another. The rigidity of the other
+papers is eight to nine tenths of the rigidity of a plate. The sources say which numbers are typical or
+assumed. The strain limit is not the strain at which a material yields or tears. It keeps strain invisible
+where a mesh is too coarse for its bends.
 
-**Directions.** Paper is about twice as stiff along the direction in which it was made as across, and woven cloth is
-many times softer in shear than along its yarns. A sheet has this where it names a direction, `direction = [1, 0,
-0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth; the materials of the second table
-have numbers for it. Without the key every sheet is the same in all directions, with the numbers of the first table,
-and cloth wraps round bodies less easily than it should. Cloth with a direction may be strained by 20 %, a shear of 16
-degrees, in place of 1 %. The page [How a sheet bends](bends.md) has the formulas, and materials of your own.
+**Directions.** Paper is about twice as stiff along the direction in which it was made as across, and woven
+cloth is many times softer in shear than along its yarns. A sheet has directions if it names one,
+`direction = [1, 0, 0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth. The
+second table has the numbers. Without the key a sheet is the same in all directions, with the numbers of the
+first table, and cloth wraps round bodies less easily than it should. Cloth with a direction may be strained
+by 20 %, a shear of 16 degrees, in place of 1 %. The page [How a sheet bends](bends.md) has the formulas, and
+materials of your own.
 
-Materials with a moment `M_y` yield in bending where a scene asks for it by `sheet.yield = {}`: bends beyond the
-curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. (The page \"The theory\" has the
-formulas.) The yield differs more than all other numbers: that of a metal by its alloy and temper. `yield = { moment =
-..., hardening = ... }` replaces it, and `yield_stress` among the numbers of a material computes it, `M_y =
-yield_stress thickness^2 / 4`. `M_y` is the moment of a section that has yielded in the whole of its thickness; with
-`yield = { layers = 4 }` bends stay from two thirds of it on, as in a section that yields from its faces inwards.
+**Yield.** A material with a moment `M_y` yields in bending if a scene sets `sheet.yield = {}`. Bends beyond
+the curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. [The theory](theory.md)
+has the formulas. The moment of yield varies more than all other numbers, for a metal with alloy and temper.
+The key `yield = { moment = ..., hardening = ... }` overrides it, and `yield_stress` among the numbers of a
+material computes `M_y = yield_stress thickness^2 / 4`. At `M_y` the whole thickness of a section has yielded.
+With `yield = { layers = 4 }` bends stay from two thirds of `M_y` on, as in a section that yields from its
+faces inwards.
 
 ";
 

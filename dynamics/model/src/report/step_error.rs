@@ -421,7 +421,7 @@ impl Advice for StepError {
                  `StepControl::max_factorisations`",
             ),
             Self::Interrupted { .. } => {
-                Some("the state is that of the last accepted sub-step: step on from there")
+                Some("the last accepted part of the step is kept: step on from there")
             }
             Self::Engine { source, .. } => source.advice(),
             Self::Linalg { .. } => None,

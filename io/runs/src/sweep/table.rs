@@ -61,7 +61,7 @@ impl SweepTable {
             let folder = format!("{k:03}");
             if row.get(0) != Some(k.to_string().as_str()) || row.get(1) != Some(folder.as_str()) {
                 return Err(format!(
-                    "row {} is not that of run {k} in the folder {folder}",
+                    "row {} does not belong to run {k} in the folder {folder}",
                     k + 1
                 ));
             }

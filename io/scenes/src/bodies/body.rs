@@ -14,8 +14,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A rigid body that responds: what touches it moves it, and gravity does. It meets sheets, obstacles and
-/// other bodies, whether `contact.self_contact` is set or not, by the friction of these: `obstacle.friction`,
-/// or otherwise `contact.friction` or that of a `contact.pair` with its name.
+/// other bodies, whether `contact.self_contact` is set or not, by their friction: `obstacle.friction`, or
+/// otherwise `contact.friction`, or the friction of a `contact.pair` with its name.
 ///
 /// ```toml
 /// [[body]]
@@ -36,7 +36,8 @@ pub struct BodyKey {
     pub shape: ShapeKey,
     /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out
     /// 32, and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with
-    /// so many sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
+    /// so many sides, whose corners are on the shape. The body has the mass, centre and inertia of the true
+    /// shape.
     #[serde(default)]
     pub sides: Option<usize>,
     /// Density, kg/m3. Either this or `mass` has to be given.

@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct GlueKey {
     /// The names of the sheets of the two sides, if there are several; of a seam with a body the name of the
-    /// sheet and then that of the body.
+    /// sheet, then the name of the body.
     #[serde(default)]
     pub sheets: Option<[String; 2]>,
     /// The vertices of one side.
@@ -92,7 +92,7 @@ fn closed() -> ProfileKey {
     ProfileKey::Constant(1.0)
 }
 
-/// One side of a seam. Points are those of the rest shape before it is placed.
+/// One side of a seam. Points are in the rest shape before it is placed.
 ///
 /// ```toml
 /// [[glue]]

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 #[checked]
 pub struct AirKey {
-    /// Density, kg/m3: that of air at 20 degrees Celsius by default.
+    /// Density, kg/m3; by default of air at 20 degrees Celsius.
     pub density: f64,
     /// Coefficient of the drag across the face, of a plate with its two sides: 1.17 of squares and disks, up
     /// to 2 of long strips.

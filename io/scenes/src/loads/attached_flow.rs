@@ -28,7 +28,7 @@ pub struct AttachedFlowKey {
     /// The name of the sheet, if there are several and not all are meant.
     #[serde(default)]
     pub sheet: Option<String>,
-    /// Where the air leaves the sheet: the edges of its boundary both ends of which are selected.
+    /// Where the air leaves the sheet: the edges of its boundary whose two ends are selected.
     pub trailing: Selection,
     /// The number of rows of vortices that the wake has, one for each step; what is behind them is one row
     /// more. At least 2. If left out, 80.

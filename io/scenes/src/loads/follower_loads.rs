@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 /// A pressure on one side of faces, which stays along their normals: positive towards the side from which
 /// they are counter-clockwise, their front.
 ///
-/// Where the faces enclose a volume, glued sheets together, it has a potential, `-p V`; elsewhere its work is
-/// that of a force. Sheets that are glued to each other by their rims have a common front, that of the first
-/// one that is named.
+/// Where the faces enclose a volume, glued sheets together, it has a potential, `-p V`; elsewhere its
+/// work is the work of a force. Sheets that are glued to each other by their rims have a common front, the
+/// front of the first one that is named.
 ///
 /// ```toml
 /// [[forces.pressure]]
@@ -31,7 +31,7 @@ pub struct Pressure {
     /// The names of the sheets. If left out, all of them.
     #[serde(default)]
     pub sheets: Option<Vec<String>>,
-    /// On which faces: those all corners of which are selected.
+    /// The faces whose corners are all selected.
     #[serde(default = "everywhere")]
     pub at: Selection,
     /// Size, pascals.
@@ -104,7 +104,7 @@ pub struct Moment {
     /// The name of the sheet, if there are several.
     #[serde(default)]
     pub sheet: Option<String>,
-    /// On which edges: those both ends of which are selected. They share the moment by their lengths.
+    /// The edges whose two ends are selected. They share the moment by their lengths.
     pub at: Selection,
     /// The axis about which the moment turns at the start, right-handed, of any length. Later it turns about
     /// the edges.

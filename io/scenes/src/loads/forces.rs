@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 /// names and no arrays.)
 const EARTH: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// Forces on the sheet besides those of supports and contact.
+/// Forces on the sheet besides the forces of supports and contact.
 ///
 /// ```toml
 /// [forces]
@@ -42,7 +42,7 @@ pub struct Forces {
     pub gas: Vec<GasKey>,
     /// Moments on lines of edges.
     pub moment: Vec<Moment>,
-    /// Uniform accelerations that change with time, such as those of a frame that is shaken.
+    /// Uniform accelerations that change with time, such as the acceleration of a frame that is shaken.
     pub acceleration: Vec<Acceleration>,
 }
 

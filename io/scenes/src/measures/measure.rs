@@ -54,21 +54,20 @@ use std::sync::Arc;
 pub struct Measure {
     /// Its name, of letters, digits, `_` and `-`.
     pub name: String,
-    /// The name of the sheet, if there are several and not the vertices of all are meant; or of a body, whose
-    /// vertices are those of its surface.
+    /// The name of the sheet, if there are several and not the vertices of all are meant; or of a body, for
+    /// the vertices of its surface.
     #[serde(default)]
     pub sheet: Option<String>,
     /// Which vertices. What is measured is their mean place. To be left out for a crease.
     #[serde(default)]
     pub at: Option<Selection>,
-    /// The name of a `[[crease]]`, of which an angle or a moment is measured.
+    /// The name of a `[[crease]]` whose angle or moment is measured.
     #[serde(default)]
     pub crease: Option<String>,
-    /// Creases of the pattern that `[folding]` folds, of which an angle or a moment is measured.
+    /// Creases of the pattern that `[folding]` folds, whose angle or moment is measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fold: Option<FoldGroup>,
-    /// The name of a `[[forces.gas]]`, or of a `[[forces.pressure]]`, of which a pressure or the volume is
-    /// measured.
+    /// The name of a `[[forces.gas]]`, or of a `[[forces.pressure]]`, whose pressure or volume is measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub enclosed: Option<String>,
     /// What is measured of it.
@@ -98,10 +97,10 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
-    /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: the bend
-    /// of a sheet over the faces beside it, which the angle between these faces includes, is taken out. It is
-    /// 0 for flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees where a
-    /// crease is pressed through itself.
+    /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: it
+    /// excludes the bend of a sheet over the faces beside it, which the angle between these faces includes.
+    /// It is 0 for flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees
+    /// where a crease is pressed through itself.
     FoldAngle,
     /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length
     /// times the angle from where it rests, in radians. It is positive where the crease is folded further to

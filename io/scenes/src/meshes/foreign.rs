@@ -26,9 +26,9 @@ pub(crate) enum DrawingUnit {
     Pixel,
 }
 
-/// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, whose keys
-/// are those of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of
-/// one frame.
+/// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, with the
+/// keys of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of one
+/// frame.
 ///
 /// ```toml
 /// [sheet.mesh]

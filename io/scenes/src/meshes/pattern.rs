@@ -67,8 +67,8 @@ pub enum AlikeCreases {
 }
 
 /// The waterbomb tessellation: a rectangle of squares whose diagonals are valleys and whose sides and middle
-/// lines are mountains. Odd rows are moved by half a square. The pattern is that of Y. Chen, H. Feng, J. Ma,
-/// R. Peng and Z. You, *Symmetric waterbomb origami*, Proc. R. Soc. A 472, 2016.
+/// lines are mountains. Odd rows are moved by half a square. The pattern is from Y. Chen, H. Feng, J. Ma, R.
+/// Peng and Z. You, *Symmetric waterbomb origami*, Proc. R. Soc. A 472, 2016.
 ///
 /// ```toml
 /// [sheet.mesh.waterbomb]

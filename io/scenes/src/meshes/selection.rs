@@ -27,8 +27,8 @@ pub enum Selection {
     Boundary,
     /// Vertices by their numbers, from 0.
     Vertices(Vec<usize>),
-    /// Faces by their numbers, from 0, and their vertices. Where the sheet is refined, these are its faces
-    /// after that, as in the frames of a run.
+    /// Faces by their numbers, from 0, and their vertices. The numbers are those after a refinement of the
+    /// sheet, as in the frames of a run.
     Faces(Vec<usize>),
     /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a
     /// group, an object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a

@@ -32,10 +32,10 @@ pub struct MethodKey {
     /// down to `min_fraction`. If left out, steps are as long as `step` says. See "The length of a step" in
     /// the chapter on methods.
     pub accuracy: Option<f64>,
-    /// Largest relative length error of an accepted step, from 1e-15 to 0.01; if left out, that of the
+    /// Largest relative length error of an accepted step, from 1e-15 to 0.01; by default the tolerance of the
     /// integrator (1e-12, or 2e-13 for conservative ones).
     pub strain_tolerance: Option<f64>,
-    /// Most iterations of a step; if left out, those of the integrator.
+    /// Most iterations of a step; by default the number of the integrator.
     pub max_iterations: Option<usize>,
     /// Stiffness of the rods against inertia on the way to a step, for `bdf2` and `implicit_euler`, from 1 to
     /// 1e8; if left out, 1e4. Sheets that are stiff in bending need more.
@@ -188,7 +188,7 @@ impl MethodKey {
         ];
         for (name, _) in given.iter().filter(|(_, given)| *given) {
             let message = format!("a chart has no `{name}`");
-            let remedy = "leave the key out; `method.chart` has those of a chart";
+            let remedy = "leave the key out; `method.chart` has the keys of a chart";
             checks.report(key.name(name), message, remedy);
         }
     }

@@ -54,7 +54,7 @@ pub struct Crease {
     pub yields: Option<CreaseYield>,
 }
 
-/// Which edges a crease consists of. Points are those of the rest shape before it is placed.
+/// Which edges a crease consists of. Points are in the rest shape before it is placed.
 ///
 /// ```toml
 /// [[crease]]
@@ -133,8 +133,8 @@ pub enum PatternEdges {
     Mountains,
     /// The valleys.
     Valleys,
-    /// The edges inside the sheet of which the pattern does not say whether they are mountains or valleys. A
-    /// positive angle makes them valleys.
+    /// The edges inside the sheet that the pattern names neither mountains nor valleys. A positive angle
+    /// makes them valleys.
     Unassigned,
     /// The edges inside panels, which are meant to stay flat.
     Flat,

@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct CurlKey {
-    /// The direction along which the sheet is curved, in the frame of the mesh, of any length. If left out,
-    /// that of the sheet.
+    /// The direction along which the sheet is curved, in the frame of the mesh, of any length. By default the
+    /// direction of the sheet.
     #[serde(default)]
     pub along: Option<[f64; 3]>,
     /// Radius of curvature, metres: positive where the sheet rolls up with the front of its faces inside,
@@ -45,7 +45,7 @@ pub struct CurlKey {
     #[serde(default)]
     pub twist: Option<f64>,
     /// In place of all of these: a shape with the vertices and faces of `mesh`, whose curvature the sheet
-    /// has, face by face. Lengths stay those of `mesh`.
+    /// has, face by face. The sheet keeps the lengths of `mesh`.
     #[serde(default)]
     pub shape: Option<MeshFileKey>,
     /// A factor of time by which the curvatures are multiplied.
@@ -114,7 +114,7 @@ impl CurlKey {
         let has_numbers = numbers.iter().any(Option::is_some);
         if self.shape.is_some() {
             if has_numbers || self.along.is_some() {
-                let message = "the curvature is that of a shape, and given by numbers besides";
+                let message = "the curvature is given twice, by a shape and by numbers";
                 checks.report(key.clone(), message, "give one of them");
             }
         } else if !has_numbers {

@@ -31,7 +31,7 @@ pub enum FoldGroup {
     Mountains,
     /// Creases with a positive angle.
     Valleys,
-    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD
+    /// Creases by the numbers of their edges in the file, from 0. (For a drawing, the numbers in the FOLD
     /// file that `isosheet convert` makes of it.)
     Edges(Vec<usize>),
     /// Creases along lines of the drawing that the mesh is made of, in the words that select lines there:

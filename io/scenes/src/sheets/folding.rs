@@ -53,8 +53,8 @@ pub struct Folding {
     pub time: f64,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Torsional stiffness of a metre of the edges that stay flat, N. If left out, 50 times that of the
-    /// creases in a sheet of rods; an elastic sheet has no such springs then, since its bending stiffness
+    /// Torsional stiffness of a metre of the edges that stay flat, N. By default 50 times the stiffness of
+    /// the creases in a sheet of rods, and no such springs in an elastic sheet, since its bending stiffness
     /// keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
@@ -251,7 +251,7 @@ impl Folding {
                 checks.report(key.name("frame"), message, "leave it out");
             }
             _ => {
-                let message = "the angles are those of a file, and `sheet.mesh` is no file";
+                let message = "the angles come from a file, but `sheet.mesh` is no file";
                 let remedy = "write `mesh = { file = { path = ... } }` or `mesh = { drawing = { ... } }`, or fold by \
                               `[[crease]]`";
                 checks.report(key.clone(), message, remedy);

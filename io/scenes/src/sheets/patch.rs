@@ -6,9 +6,9 @@ use crate::words::part::Part;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A part of a sheet that is of another material: a label, a reinforcement, a stiff board in a soft cover.
-/// Mass, stiffness in the plane and in bending, and the yield are those of its material; the distance of
-/// contact is that of the sheet. Where patches overlap, the last one counts.
+/// A part of a sheet with another material: a label, a reinforcement, a stiff board in a soft cover. It has
+/// the mass, the stiffness in the plane and in bending, and the yield of its material, and the thickness of
+/// the sheet in contact. Where patches overlap, the last one counts.
 ///
 /// ```toml
 /// [sheet]
@@ -21,14 +21,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct Patch {
-    /// Its faces: those by number or of the group, or otherwise those all corners of which are selected.
+    /// Its faces: faces by number or of a group, or otherwise faces whose corners are all selected.
     pub at: Selection,
     /// What it is made of.
     pub material: MaterialKey,
-    /// The direction of its material, in the frame of the mesh. If left out, that of the sheet.
+    /// The direction of its material, in the frame of the mesh. By default the direction of the sheet.
     #[serde(default)]
     pub direction: Option<[f64; 3]>,
-    /// Mass of a square metre, kg/m2. If left out, that of its material.
+    /// Mass of a square metre, kg/m2. By default the mass of its material.
     #[serde(default)]
     pub density: Option<f64>,
 }

@@ -52,8 +52,8 @@ pub struct SheetKey {
     /// the same in all directions, with the means of both.
     #[serde(default)]
     pub direction: Option<Direction>,
-    /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one
-    /// 0.08, as office paper has. Not used if `mass` is given.
+    /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. By default the value of the material; without a
+    /// material 0.08, as for office paper. Not used if `mass` is given.
     #[serde(default)]
     pub density: Option<f64>,
     /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
@@ -64,10 +64,11 @@ pub struct SheetKey {
     /// Faces with a common vertex do not keep it: a fold is sharp at its line, and the layers open beside it.
     #[serde(default)]
     pub thickness: f64,
-    /// What keeps the lengths. If left out, the elasticity of the material; without one rigid rods.
+    /// What keeps the lengths. By default the elasticity of the material; without a material rigid rods.
     #[serde(default)]
     pub isometry: Option<IsometryKey>,
-    /// What resists bending. If left out, a plate of the rigidity of the material; without one nothing.
+    /// What resists bending. By default a plate with the rigidity of the material; without a material
+    /// nothing.
     #[serde(default)]
     pub bending: Option<Bending>,
     /// What bends are measured from.
@@ -132,7 +133,7 @@ pub enum IsometryKey {
     /// The elasticity of the material, with slack where faces bend, and a limit of strain that nothing
     /// exceeds. For `bdf2` and `implicit_euler`.
     Elastic {
-        /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
+        /// Young's modulus times thickness, N/m: office paper has 3e5. By default the value of the material.
         #[serde(default)]
         stiffness: Option<f64>,
         /// Of a sheet with a `direction`, along which `stiffness` is: Young's modulus across it times
@@ -142,15 +143,15 @@ pub enum IsometryKey {
         /// Of the same sheet the shear modulus times thickness, N/m.
         #[serde(default)]
         shear: Option<f64>,
-        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3. With `across`
-        /// and `shear` it is the contraction across the direction by a pull along it, of any sign, and 0.3 if
-        /// left out.
+        /// Poisson's ratio, from 0 to 0.5. By default the value of the material; without a material 0.3. With
+        /// `across` and `shear` it is the contraction across the direction by a pull along it, of any sign,
+        /// by default 0.3.
         #[serde(default)]
         poisson: Option<f64>,
-        /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
-        /// the material, or the largest of those of patches; without one 0.05. The limit `m` is one of the
-        /// norm of Green's strain: edges become longer by a part of `sqrt(1 + 2 m) - 1` at most, shorter by
-        /// `1 - sqrt(1 - 2 m)`.
+        /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. By default the
+        /// largest limit of the materials of the sheet and its patches; without a material 0.05. The limit
+        /// `m` bounds the norm of Green's strain: edges become longer by a part of `sqrt(1 + 2 m) - 1` at
+        /// most, shorter by `1 - sqrt(1 - 2 m)`.
         #[serde(default)]
         limit: Option<f64>,
     },
@@ -192,7 +193,7 @@ pub enum Bending {
         /// Flexural rigidity, N m: office paper has about 5e-4.
         rigidity: f64,
         /// Poisson's ratio, from 0 to 0.5: how twist and bends in two directions at once compare with bends
-        /// in one. If left out, that of `isometry` or of the material; without one 0.3.
+        /// in one. By default the value of `isometry` or of the material; without both 0.3.
         #[serde(default)]
         poisson: Option<f64>,
     },
@@ -200,7 +201,7 @@ pub enum Bending {
     /// `k_1` along the direction, `k_2` across and the twist `k_12` store
     /// `(along k_1^2 + 2 coupling k_1 k_2 + across k_2^2 + 4 twist k_12^2) / 2` per area.
     Orthotropic {
-        /// The direction, in the frame of the mesh, of any length. If left out, that of the sheet.
+        /// The direction, in the frame of the mesh, of any length. By default the direction of the sheet.
         #[serde(default)]
         direction: Option<[f64; 3]>,
         /// Rigidity `D11` along the direction, N m.
@@ -439,7 +440,7 @@ impl SheetKey {
         if let Some(direction) = &self.direction {
             direction.check(key.name("direction"), checks);
             if matches!(direction, Direction::Texture(_)) && !matches!(self.mesh, Mesh::File(_)) {
-                let message = "the direction is that of a texture, and the mesh is from no file";
+                let message = "the direction comes from a texture, but the mesh is from no file";
                 checks.report(
                     key.name("direction.uv"),
                     message,

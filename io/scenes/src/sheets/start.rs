@@ -19,11 +19,11 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 #[checked]
 pub struct StartKey {
-    /// A mesh file with the vertices and faces of `mesh` in the same order, whose positions are those at the
-    /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
-    /// by up to 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
+    /// A mesh file with the vertices and faces of `mesh` in the same order, with the positions at the start.
+    /// It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths by up to
+    /// 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
     pub file: Option<MeshFileKey>,
-    /// The positions at the start as a list: those of the vertices of `mesh`, in its order, metres.
+    /// The positions of the vertices of `mesh` at the start as a list, in its order, metres.
     pub positions: Option<Vec<[f64; 3]>>,
     /// Velocities of the vertices of `mesh` in space, in its order, m/s, beside `velocity` and `spin`.
     pub velocities: Option<Vec<[f64; 3]>>,
@@ -66,7 +66,7 @@ impl StartKey {
             let key = key.name("positions");
             checks.points(key.clone(), positions);
             if self.file.is_some() {
-                let message = "the sheet starts at the positions of a list and at those of a file";
+                let message = "the start is given twice, by a list of positions and by a file";
                 checks.report(key, message, "leave one of both out");
             }
         }

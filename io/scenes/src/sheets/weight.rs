@@ -8,8 +8,8 @@ use crate::words::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A mass that some vertices share equally, beside that of the sheet: a clip at a corner, a batten in a hem.
-/// It is heavy and inert, and has no extent.
+/// An additional mass that some vertices share equally: a clip at a corner, a batten in a hem. It is heavy
+/// and inert, and has no extent.
 ///
 /// ```toml
 /// [[weight]]

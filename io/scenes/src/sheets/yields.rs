@@ -24,10 +24,10 @@ use serde::{Deserialize, Serialize};
 #[checked]
 pub struct SheetYield {
     /// Moment at which a metre of the sheet yields, N m per m: `s h^2 / 4` where the material yields at the
-    /// stress `s` and is `h` thick. If left out, that of the material.
+    /// stress `s` and is `h` thick. By default the moment of the material.
     pub moment: Option<f64>,
-    /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is
-    /// left out too, and otherwise 0.
+    /// Growth of this moment by plastic curvature, N m. By default the hardening of the material if `moment`
+    /// is left out too, and otherwise 0.
     pub hardening: Option<f64>,
     /// Number of layers of each half of the sheet, each of which yields by itself, at the points of Gauss and
     /// Legendre. With 11, bends that stay have an error of 1 %; with 1, the sheet yields in the whole of its

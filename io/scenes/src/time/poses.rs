@@ -34,8 +34,8 @@ const ROUND_OFF: f64 = 1e-6;
 pub struct Poses {
     /// The poses, in the order of time.
     pub keys: Vec<TimedPose>,
-    /// The frame while an obstacle is in its `pose`, or vertices are where they start. If left out, that of
-    /// the first key.
+    /// The frame while an obstacle is in its `pose`, or vertices are where they start. By default the frame
+    /// of the first key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FramePose>,
     /// The times at which the velocity really jumps, seconds: there the method begins anew. If left out, at

@@ -13,12 +13,12 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A function of time: a number, which stands for the same value at all times, or a `Course`. Its unit is
-/// that of what it drives: metres for a displacement, degrees for an angle, newtons for a load.
+/// A function of time: a number for a value that stays the same, or a `Course`. A displacement is in metres,
+/// an angle in degrees, a load in newtons.
 ///
-/// It is taken at the ends of steps. A function that turns back within a step by more than a quarter of its
-/// range, which is that of a sine with three steps in a period, and an angle of a motion that changes by more
-/// than half a turn in a step are refused.
+/// The method evaluates the function at the end of each step. A function that turns back within a step by
+/// more than a quarter of its range is refused; a sine with three steps in a period turns back by that much.
+/// An angle of a motion that changes by more than half a turn in a step is refused, too.
 ///
 /// ```toml
 /// [[forces.load]]

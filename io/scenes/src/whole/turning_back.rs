@@ -44,8 +44,8 @@ impl Scene {
         for group in &groups {
             if let Some((key, time, by)) = turned_back(group, h, until) {
                 let message = format!(
-                    "`{key}` turns back by {} within the step of {} s after t = {} s, and functions of time are taken \
-                     at the ends of steps",
+                    "`{key}` turns back by {} within the step of {} s after t = {} s, but a step uses only the value at \
+                     its end",
                     brief(by),
                     brief(h),
                     brief(time)
