@@ -1,8 +1,7 @@
-//! Laws of friction: what every one of them says, and which one acts where.
+//! What every law of friction says.
 
-use super::{Coefficients, Coulomb, FrictionError, FrictionLawFault};
+use super::{FrictionError, FrictionLawFault};
 use std::fmt::{Debug, Write};
-use std::sync::Arc;
 
 /// A law of friction: the friction force over the normal force, `mu(v)`, at the speed `v >= 0` at which two
 /// surfaces slide on each other.
@@ -11,7 +10,7 @@ use std::sync::Arc;
 /// Speeds are in metres per second. A law has
 ///
 /// * `mu(0) = 0` and no jump: what sticks creeps, at the speed at which `mu` balances the pull. A law with
-///   friction at rest rises from zero over speeds that count as rest, as [`Coulomb`] does;
+///   friction at rest rises from zero over speeds that count as rest, as [`Coulomb`](super::Coulomb) does;
 /// * `mu(v) >= 0`: friction takes energy out;
 /// * `mu` as the derivative of its integral, the dissipation potential over the normal force, which the
 ///   solver minimises.
@@ -76,66 +75,6 @@ pub trait FrictionLaw: Debug + Send + Sync {
             false => self.slope(v),
         }
     }
-}
-
-/// Friction between two that may touch.
-#[derive(Debug, Clone)]
-pub enum Friction {
-    /// Coulomb's law with these coefficients, smoothed below the
-    /// [speed that counts as rest](super::ContactLaws::rest_speed).
-    Coulomb(Coefficients),
-    /// Another law.
-    Law(Arc<dyn FrictionLaw>),
-}
-
-impl Friction {
-    /// No friction, and no cost of it.
-    pub const NONE: Self = Self::Coulomb(Coefficients::FRICTIONLESS);
-
-    /// By another law than Coulomb's.
-    pub fn law(law: impl FrictionLaw + 'static) -> Self {
-        Self::Law(Arc::new(law))
-    }
-
-    /// # Errors
-    /// [`FrictionError`] unless coefficients are `0 <= sliding <= rest`, and another law is zero at rest with
-    /// a finite slope.
-    pub fn validate(&self) -> Result<(), FrictionError> {
-        match self {
-            Self::Coulomb(coefficients) => coefficients.validate(),
-            Self::Law(law) => check_values(law.as_ref(), 0.0),
-        }
-    }
-
-    /// Whether there is no friction.
-    pub(crate) fn is_none(&self) -> bool {
-        matches!(self, Self::Coulomb(coefficients) if coefficients.is_frictionless())
-    }
-}
-
-impl From<Coefficients> for Friction {
-    fn from(coefficients: Coefficients) -> Self {
-        Self::Coulomb(coefficients)
-    }
-}
-
-/// Laws are equal to themselves alone.
-impl PartialEq for Friction {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Coulomb(a), Self::Coulomb(b)) => a == b,
-            (Self::Law(a), Self::Law(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
-}
-
-/// Coulomb's law of a step of `h` seconds, with speeds in metres a step; none in a step without duration.
-pub(super) fn coulomb(coefficients: Coefficients, rest_speed: f64, h: f64) -> Option<Coulomb> {
-    if coefficients.is_frictionless() {
-        return None;
-    }
-    Coulomb::new(coefficients.rest, coefficients.sliding, rest_speed * h).ok()
 }
 
 /// Compares what a law says at a sliding speed (metres per second) with what every law has there.

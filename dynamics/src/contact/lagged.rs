@@ -1,6 +1,6 @@
 //! Friction of a step: contacts with constant normals and normal forces.
 
-use super::friction_law::coulomb;
+use super::friction::coulomb;
 use super::stencil::Stencil;
 use super::{
     ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws, Coulomb,
