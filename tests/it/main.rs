@@ -29,6 +29,7 @@ mod modules;
 mod orders;
 mod origami;
 mod plastic;
+mod readme;
 mod rigid_bodies;
 mod robust;
 mod scenes;

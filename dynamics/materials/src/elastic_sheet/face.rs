@@ -374,8 +374,8 @@ impl Face {
         limit - KEPT_MARGIN * (limit - strain)
     }
 
-    /// Whether a displacement from where it is ends within the limit, and keeps a part of the distance from it;
-    /// `end` is the face there.
+    /// Whether a displacement from where it is ends within the limit, and keeps a part of the distance from
+    /// it; `end` is the face there.
     pub(super) fn stays_within(&self, at: At<'_>, end: &Strained) -> bool {
         let strain = end.strain.norm();
         // Most faces stay within what any strain at the start allows.
@@ -417,8 +417,8 @@ impl Face {
         }
     }
 
-    /// The strains along the displacement `dx` from a state, unless all of it keeps the distance from the limit
-    /// but for [`KEPT_MARGIN`] of it.
+    /// The strains along the displacement `dx` from a state, unless all of it keeps the distance from the
+    /// limit but for [`KEPT_MARGIN`] of it.
     pub(super) fn course(&self, at: &Strained, dx: &[f64]) -> Option<StrainCourse> {
         let Strained {
             growth,
