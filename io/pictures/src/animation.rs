@@ -26,8 +26,6 @@ pub fn animated_png(
     }
     let mut bytes = Vec::new();
     let mut encoder = encoder(&mut bytes, size[0] as u32, size[1] as u32);
-    // Half as large again as with the best compression, in a quarter of the time.
-    encoder.set_compression(png::Compression::Balanced);
     encoder.set_animated(frames, 0)?;
     encoder.set_frame_delay(delay, 1000)?;
     let mut writer = encoder.write_header()?;

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod animation;
+mod band;
 mod camera;
 mod canvas;
 mod colour_bar;
@@ -13,6 +14,7 @@ mod montage;
 mod occlusion;
 mod pieces;
 mod raster;
+mod shading;
 mod sheet;
 mod solid;
 mod text;

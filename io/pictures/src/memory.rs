@@ -1,8 +1,8 @@
 //! How many pictures memory holds at a time.
 
+use super::band::MEMORY_OF_COLUMN;
 use super::canvas::Light;
 use super::error::PictureError;
-use super::raster::MEMORY_OF_COLUMN;
 use isosheet_files::memory;
 
 /// Bytes for a pixel of a picture: its light, twice its three bytes as they are listed, and these bytes as
@@ -37,8 +37,8 @@ mod tests {
     #[test]
     fn so_many_pictures_are_drawn_as_memory_holds() {
         let threads = rayon::current_num_threads() as u64;
-        // 27 bytes a pixel, and 3 x 96 samples of 32 bytes for each column of each thread.
-        let (one, bands) = (27 * 1_000_000, threads * 1000 * 288 * 32);
+        // 27 bytes a pixel, and 32 x 9 samples of 20 bytes and 32 flags for each column of each thread.
+        let (one, bands) = (27 * 1_000_000, threads * 1000 * 32 * (9 * 20 + 1));
         let at_once = |free| at_once_within([1000, 1000], 8, free);
         assert_eq!(at_once(bands + 3 * one).unwrap(), 3);
         assert_eq!(at_once(bands + 100 * one).unwrap(), 8);

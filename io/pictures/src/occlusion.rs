@@ -6,9 +6,7 @@ use super::solid::Triangles;
 use isosheet_mesh::vec3::{axpy, cross, dot, sub, unit};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
-use parry3d_f64::query::Ray;
-use parry3d_f64::query::details::local_ray_intersection_with_triangle;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use rayon::prelude::*;
 
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
@@ -48,6 +46,7 @@ pub(super) struct Surroundings {
 
 /// What hides the surroundings of points.
 pub(super) struct Occlusion {
+    /// Of each face a corner, and the edges from there.
     faces: Vec<[Vector; 3]>,
     tree: Bvh,
     reach: f64,
@@ -60,20 +59,33 @@ impl Occlusion {
         let corner = |v: usize| scene.x[v].into();
         let faces: Vec<[Vector; 3]> = scene.faces.iter().map(|f| f.map(corner)).collect();
         let boxes: Vec<Aabb> = faces.iter().map(|f| Aabb::from_points(*f)).collect();
+        let edges = faces.iter().map(|[a, b, c]| [*a, *b - *a, *c - *a]);
         Self {
             tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes),
-            faces,
+            faces: edges.collect(),
             reach,
         }
     }
 
-    /// What is around the three corners of every piece.
+    /// What is around the three corners of every piece; those of pieces that are not seen at all count as
+    /// open.
     ///
     /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law.
     /// The results do not depend on the number of threads: every ray is followed by itself, and the nearest
     /// face is the same in whatever order the faces are looked at.
-    pub(super) fn of_corners(&self, pieces: &[Piece], scene: &Triangles) -> Vec<[Surroundings; 3]> {
+    pub(super) fn of_corners(
+        &self,
+        pieces: &[Piece],
+        seen: &[bool],
+        scene: &Triangles,
+    ) -> Vec<[Surroundings; 3]> {
         let (spots, of_corner) = spots(pieces, scene);
+        let mut is_seen = vec![false; spots.len()];
+        for (spots, _) in of_corner.iter().zip(seen).filter(|(_, seen)| **seen) {
+            for k in spots {
+                is_seen[*k] = true;
+            }
+        }
         let directions = spiral();
         let one = |(k, spot): (usize, &Spot)| {
             let up = unit(spot.normal);
@@ -82,10 +94,11 @@ impl Occlusion {
             let centroid = spot.centroid.map(|c| c / spot.corners);
             let inset = if is_crease { INSET } else { 0.0 };
             let from = axpy(corner, inset, sub(centroid, corner));
-            Surroundings {
-                open: self.around(&from, &up, &directions, &spot.faces),
-                normal: up,
-            }
+            let open = match is_seen[k] {
+                true => self.around(&from, &up, &directions, &spot.faces),
+                false => 1.0,
+            };
+            Surroundings { open, normal: up }
         };
         let around: Vec<Surroundings> = spots.par_iter().enumerate().map(one).collect();
         of_corner
@@ -112,20 +125,61 @@ impl Occlusion {
         let ahead = cross(up, right);
         let seen = directions.iter().map(|d| {
             let along = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
-            let ray = Ray::new((*from).into(), along.into());
-            let nearest = self.tree.cast_ray(&ray, self.reach, |face, _| {
-                if free.contains(&(face as usize)) {
-                    return None;
-                }
-                let [a, b, c] = self.faces[face as usize];
-                let t = local_ray_intersection_with_triangle(a, b, c, &ray)?
-                    .0
-                    .time_of_impact;
-                (t > TOUCHING * self.reach).then_some(t)
-            });
+            let ray = Ray::new(*from, along);
+            let nearest = self.tree.find_best(
+                self.reach,
+                |node, _| ray.enters(node),
+                |face, _| {
+                    let t = ray.meets(&self.faces[face as usize])?;
+                    let hides = t > TOUCHING * self.reach && !free.contains(&(face as usize));
+                    hides.then_some(t)
+                },
+            );
             nearest.map_or(1.0, |(_, t)| (t.min(self.reach) / self.reach).sqrt())
         });
         seen.sum::<f64>() / RAYS as f64
+    }
+}
+
+/// A ray as the tree asks for it.
+struct Ray {
+    from: Vector,
+    along: Vector,
+    inverse: Vector,
+}
+
+impl Ray {
+    fn new(from: [f64; 3], along: [f64; 3]) -> Self {
+        Self {
+            from: from.into(),
+            along: along.into(),
+            // Not infinite where a component is zero.
+            inverse: along.map(|c| 1.0 / (c + f64::MIN_POSITIVE)).into(),
+        }
+    }
+
+    /// Where the ray enters a box, or the largest number for one that it misses.
+    fn enters(&self, node: &BvhNode) -> f64 {
+        let low = (node.mins() - self.from) * self.inverse;
+        let high = (node.maxs() - self.from) * self.inverse;
+        let enter = low.min(high).max_element().max(0.0);
+        let leave = low.max(high).min_element();
+        if enter <= leave { enter } else { f64::MAX }
+    }
+
+    /// Where the ray meets a face that is given by a corner and the edges from there.
+    fn meets(&self, [corner, p, q]: &[Vector; 3]) -> Option<f64> {
+        let normal = self.along.cross(*q);
+        let volume = 1.0 / p.dot(normal);
+        let offset = self.from - *corner;
+        let u = volume * offset.dot(normal);
+        // No number for a ray in the plane of the face, which meets nothing.
+        if !(0.0..=1.0).contains(&u) {
+            return None;
+        }
+        let across = offset.cross(*p);
+        let v = volume * self.along.dot(across);
+        (v >= 0.0 && u + v <= 1.0).then(|| volume * q.dot(across))
     }
 }
 
@@ -198,7 +252,8 @@ mod tests {
     use isosheet_mesh::Topology;
 
     fn openness(pieces: &[Piece], scene: &Triangles, reach: f64) -> Vec<[f64; 3]> {
-        let around = Occlusion::new(scene, reach).of_corners(pieces, scene);
+        let around =
+            Occlusion::new(scene, reach).of_corners(pieces, &vec![true; pieces.len()], scene);
         around.iter().map(|c| c.map(|c| c.open)).collect()
     }
 
@@ -248,6 +303,11 @@ mod tests {
         // Above everything is hidden at 0.25 / cos, below nothing.
         let above = seen(&both, &x, false)[0];
         assert!(above.iter().all(|o| (0.5..0.75).contains(o)), "{above:?}");
+        let scene_of_both = scene(&both, &x);
+        let pieces_of_both = pieces(&scene_of_both, |_| false);
+        let occlusion = Occlusion::new(&scene_of_both, 1.0);
+        let unseen = occlusion.of_corners(&pieces_of_both, &[false, true], &scene_of_both);
+        assert!(unseen[0].iter().all(|corner| corner.open == 1.0));
         assert!(open(&seen(&both, &x, true)[0]));
     }
 
@@ -270,7 +330,8 @@ mod tests {
     fn bends_have_one_normal_and_folds_two() {
         for (slope, expected) in [(0.3_f64, [0.0, 0.3]), (1.6, [0.0, 1.6])] {
             let scene = hinge(slope);
-            let around = Occlusion::new(&scene, 1.0).of_corners(&pieces(&scene, |_| false), &scene);
+            let pieces = pieces(&scene, |_| false);
+            let around = Occlusion::new(&scene, 1.0).of_corners(&pieces, &[true; 2], &scene);
             let shared = if slope < 1.0 {
                 [slope / 2.0; 2]
             } else {

@@ -132,8 +132,10 @@ impl Cutter<'_> {
             let in_space = |a: &[f64; 3], b: &[f64; 3]| {
                 // The rim of a flat end matters where the picture shows it.
                 let is_seen = || is_curved || !self.is_outside(&[*a, *b, *b], skin);
-                if is_behind || skin.is_arc(a, b) && is_seen() {
+                if is_behind {
                     distance(a, b)
+                } else if skin.is_arc(a, b) && is_seen() {
+                    skin.across(a, b)
                 } else {
                     0.0
                 }
@@ -151,7 +153,7 @@ impl Cutter<'_> {
                 continue;
             }
             let (side, length) = longest(&points, |a, b| self.pixels(a, b));
-            if length > self.pixels * skin.grain() {
+            if length > self.pixels {
                 let middle = middle(&mut halves.in_picture, piece.corners, side, |a, b| {
                     let part = self.camera.middle(&x[a], &x[b]);
                     x.push(skin.middle(&x[a], &x[b], part));

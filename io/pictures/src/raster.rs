@@ -1,14 +1,9 @@
 //! Triangles, lines and dots as pixels: what is nearer hides what is farther.
 
+use super::band::{BAND, Band, Over, Plane, bins, bounds};
 use super::canvas::{Image, Light};
 use rayon::prelude::*;
-use std::ops::Range;
-
-/// Samples for each pixel of the picture, each way.
-const SAMPLES: usize = 3;
-
-/// Rows of the picture that are drawn together: the memory for samples does not grow with the height.
-const BAND: usize = 32;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A corner of something drawn: pixels (y downwards), nearness and light.
 #[derive(Clone, Copy, Debug)]
@@ -57,33 +52,23 @@ pub(super) struct Drawing<'a> {
     pub(super) marks: Vec<Stroke>,
 }
 
-/// What is seen at a point of the picture.
-#[derive(Clone, Copy)]
-struct Sample {
-    nearness: f64,
-    light: Light,
-    /// The face, or [`NONE`].
-    face: u32,
-    /// How much ink is over it.
-    ink: f32,
-}
-
-/// Bytes of the samples that a thread keeps for each column of a picture.
-pub(super) const MEMORY_OF_COLUMN: usize = BAND * SAMPLES * SAMPLES * size_of::<Sample>();
-
-/// How far outside of a triangle a sample still counts as inside, as a part of the triangle.
-const HAIR: f64 = 1e-7;
-
-/// The number of no face.
-const NONE: u32 = u32::MAX;
-
-/// Some rows of samples.
-struct Band {
-    /// The first row, samples.
-    top: usize,
-    width: usize,
-    height: usize,
-    samples: Vec<Sample>,
+/// Which facets are seen in a picture of this size (pixels), each by itself.
+pub(super) fn seen(size: [usize; 2], facets: &[Facet]) -> Vec<bool> {
+    let seen: Vec<AtomicBool> = facets.iter().map(|_| AtomicBool::new(false)).collect();
+    let planes: Vec<Option<Plane>> = facets.par_iter().map(Plane::of).collect();
+    let bins = bins(size[1], planes.iter().map(Plane::rows));
+    let bands = bins.par_iter().enumerate();
+    bands.for_each_init(
+        || Band::new(size[0]),
+        |band, (k, bin)| {
+            band.begin(k, size[1]);
+            band.triangles(bin, &planes);
+            for facet in band.seen() {
+                seen[facet as usize].store(true, Ordering::Relaxed);
+            }
+        },
+    );
+    seen.into_iter().map(AtomicBool::into_inner).collect()
 }
 
 impl Drawing<'_> {
@@ -91,178 +76,39 @@ impl Drawing<'_> {
     pub(super) fn picture(&self) -> Image {
         let [width, height] = self.size;
         let mut image = Image::white(width, height);
+        let planes: Vec<Option<Plane>> = self.facets.par_iter().map(Plane::of).collect();
+        let facets = bins(height, planes.iter().map(Plane::rows));
+        let [strokes, marks] =
+            [&self.strokes, &self.marks].map(|s| bins(height, s.iter().map(Stroke::rows)));
         let bands = image.pixels.par_chunks_mut(width * BAND).enumerate();
-        bands.for_each(|(k, pixels)| {
-            let rows = pixels.len() / width;
-            let mut band = Band::new(k * BAND * SAMPLES, width * SAMPLES, rows * SAMPLES);
-            for facet in &self.facets {
-                band.triangle(facet);
-            }
-            for stroke in &self.strokes {
-                band.stroke(stroke, self.faces, |sample| {
-                    sample.ink = sample.ink.max(stroke.cover);
-                });
-            }
-            for mark in &self.marks {
-                band.stroke(mark, self.faces, |sample| {
-                    (sample.light, sample.ink) = (mark.ends[0].light, 0.0);
-                });
-            }
-            band.reduce(self.ink, pixels);
-        });
+        bands.for_each_init(
+            || Band::new(width),
+            |band, (k, pixels)| {
+                band.begin(k, height);
+                band.triangles(&facets[k], &planes);
+                for &number in &strokes[k] {
+                    let stroke = &self.strokes[number as usize];
+                    band.stroke(stroke, self, |over| match over {
+                        Over::Ink(ink) => Over::Ink(ink.max(stroke.cover)),
+                        Over::Mark(_) => over,
+                    });
+                }
+                for &number in &marks[k] {
+                    let mark = &self.marks[number as usize];
+                    band.stroke(mark, self, |_| Over::Mark(number));
+                }
+                band.reduce(self, &planes, pixels);
+            },
+        );
         image
     }
 }
 
-impl Band {
-    fn new(top: usize, width: usize, height: usize) -> Self {
-        let empty = Sample {
-            nearness: f64::NEG_INFINITY,
-            light: [1.0; 3],
-            face: NONE,
-            ink: 0.0,
-        };
-        Self {
-            top,
-            width,
-            height,
-            samples: vec![empty; width * height],
-        }
+impl Stroke {
+    pub(super) fn rows(&self) -> [f64; 2] {
+        let [low, high] = bounds(self.ends.map(|end| end.y));
+        [low - 0.5 * self.width, high + 0.5 * self.width]
     }
-
-    /// Columns whose centres are between two places, pixels.
-    fn columns(&self, low: f64, high: f64) -> Range<usize> {
-        range(low, high, 0, self.width)
-    }
-
-    /// Rows whose centres are between two places, pixels.
-    fn rows(&self, low: f64, high: f64) -> Range<usize> {
-        range(low, high, self.top, self.height)
-    }
-
-    /// A triangle whose light is interpolated between its corners.
-    fn triangle(&mut self, facet: &Facet) {
-        let c = &facet.corners;
-        let [low, high] = bounds(c.map(|c| c.y));
-        let rows = self.rows(low, high);
-        let area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
-        // A millionth of a sample: such a triangle is a line.
-        if rows.is_empty() || area.abs() < 1e-7 {
-            return;
-        }
-        let [left, right] = bounds(c.map(|c| c.x));
-        // The weights of the corners are linear: their values at the origin, and their changes by x and y.
-        let weights = [0, 1, 2].map(|k| {
-            let (p, q) = (&c[(k + 1) % 3], &c[(k + 2) % 3]);
-            [p.x * q.y - q.x * p.y, p.y - q.y, q.x - p.x].map(|w| w / area)
-        });
-        for row in rows {
-            let y = centre(self.top + row);
-            let at_row = weights.map(|[w, dx, dy]| [w + dy * y, dx]);
-            let (mut low, mut high) = (left, right);
-            for [w, dx] in at_row {
-                // A hair of overlap closes the cracks between neighbouring triangles.
-                let end = -(w + HAIR) / dx;
-                if dx > 0.0 {
-                    low = low.max(end);
-                } else if dx < 0.0 {
-                    high = high.min(end);
-                } else if w < -HAIR {
-                    high = f64::NEG_INFINITY;
-                }
-            }
-            let columns = self.columns(low, high);
-            for column in columns {
-                let x = centre(column);
-                let b = at_row.map(|[w, dx]| w + dx * x);
-                let nearness = (0..3).map(|k| b[k] * c[k].nearness).sum::<f64>();
-                let sample = &mut self.samples[row * self.width + column];
-                if nearness > sample.nearness {
-                    let light = |k: usize| (0..3).map(|i| b[i] as f32 * c[i].light[k]).sum();
-                    *sample = Sample {
-                        nearness,
-                        light: [0, 1, 2].map(light),
-                        face: facet.face,
-                        ink: 0.0,
-                    };
-                }
-            }
-        }
-    }
-
-    /// Draws where a stroke is not hidden. A face that the edge bounds does not hide it, and one that has a
-    /// vertex with it in common does only where it is nearer by more than the lift.
-    fn stroke(&mut self, stroke: &Stroke, faces: &[[usize; 3]], draw: impl Fn(&mut Sample)) {
-        let [a, b] = &stroke.ends;
-        let (dx, dy) = (b.x - a.x, b.y - a.y);
-        let square = (dx * dx + dy * dy).max(1e-12);
-        let radius = 0.5 * stroke.width;
-        let [low, high] = bounds([a.y, b.y]);
-        for row in self.rows(low - radius, high + radius) {
-            let y = centre(self.top + row) - a.y;
-            // The part of the line that is near this row.
-            let part = |y: f64, otherwise: f64| if dy == 0.0 { otherwise } else { y / dy };
-            let ends = [part(y - radius, 0.0), part(y + radius, 1.0)];
-            let [left, right] = bounds(ends.map(|s| a.x + s.clamp(0.0, 1.0) * dx));
-            for column in self.columns(left - radius, right + radius) {
-                let x = centre(column) - a.x;
-                let s = ((x * dx + y * dy) / square).clamp(0.0, 1.0);
-                let aside = [x - s * dx, y - s * dy];
-                if aside[0] * aside[0] + aside[1] * aside[1] > radius * radius {
-                    continue;
-                }
-                let sample = &mut self.samples[row * self.width + column];
-                let nearness = a.nearness + s * (b.nearness - a.nearness);
-                let corners = faces.get(sample.face as usize);
-                let common = corners.map_or(0, |face| {
-                    let has = stroke.vertices.map(|v| face.contains(&v));
-                    usize::from(has[0]) + usize::from(has[1])
-                });
-                let lift = [-stroke.sink, stroke.lift, f64::INFINITY][common];
-                if nearness + lift > sample.nearness {
-                    draw(sample);
-                }
-            }
-        }
-    }
-
-    /// The mean of the samples of each pixel, with their ink.
-    fn reduce(&self, ink: Light, pixels: &mut [Light]) {
-        let weight = 1.0 / (SAMPLES * SAMPLES) as f32;
-        let width = self.width / SAMPLES;
-        for (k, pixel) in pixels.iter_mut().enumerate() {
-            let (x, y) = (k % width * SAMPLES, k / width * SAMPLES);
-            let mut sum = [0.0; 3];
-            for row in y..y + SAMPLES {
-                for sample in &self.samples[row * self.width + x..][..SAMPLES] {
-                    for i in 0..3 {
-                        sum[i] += sample.light[i] + sample.ink * (ink[i] - sample.light[i]);
-                    }
-                }
-            }
-            *pixel = sum.map(|s| s * weight);
-        }
-    }
-}
-
-/// The place of the centre of a sample, pixels.
-fn centre(number: usize) -> f64 {
-    (number as f64 + 0.5) / SAMPLES as f64
-}
-
-/// Samples whose centres are between two places (pixels), of `count` that begin with `first`.
-fn range(low: f64, high: f64, first: usize, count: usize) -> Range<usize> {
-    let at = |c: f64| c * SAMPLES as f64 - 0.5 - first as f64;
-    // Conversion from floats saturates.
-    let end = (at(high).floor() + 1.0).max(0.0) as usize;
-    let end = end.min(count);
-    (at(low).ceil().max(0.0) as usize).min(end)..end
-}
-
-/// The smallest and the largest one.
-fn bounds<const N: usize>(values: [f64; N]) -> [f64; 2] {
-    let low = values.into_iter().fold(f64::INFINITY, f64::min);
-    [low, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 #[cfg(test)]
@@ -313,6 +159,28 @@ mod tests {
             let image = drawing([8, 40], facets.to_vec()).picture();
             assert!(image.pixels.iter().all(|p| is_like(p, &[0.0, 1.0, 0.0])));
         }
+    }
+
+    /// What another facet hides is not seen, nor what is outside or is a line; a corner that looks out is.
+    #[test]
+    fn hidden_facets_are_not_seen() {
+        let at = |x: f64, size: f64, z: f64| {
+            facet(
+                0,
+                [[0.0, 0.0], [size, 0.0], [0.0, size]].map(|[a, b]| [a + x, b, z]),
+                [0.0; 3],
+            )
+        };
+        let cover = at(0.0, 100.0, 1.0);
+        let facets = [
+            at(2.0, 5.0, 0.0),
+            cover,
+            at(60.0, 41.0, 0.0),
+            at(-9.0, 8.0, 2.0),
+            at(5.0, 0.0, 2.0),
+        ];
+        assert_eq!(seen([80, 80], &facets), [false, true, true, false, false]);
+        assert_eq!(seen([8, 40], &facets), [false, true, false, false, false]);
     }
 
     #[test]

@@ -1,44 +1,26 @@
 //! A shaded picture of a sheet.
 
-use super::camera::{Camera, normal};
-use super::canvas::{Image, Light, light};
+use super::camera::Camera;
+use super::canvas::{Image, light};
 use super::colours::Colours;
 use super::error::PictureError;
-use super::occlusion::{Occlusion, Surroundings};
-use super::pieces::{Cutter, Piece};
-use super::raster::{Corner, Drawing, Facet};
-use super::solid::{DrawnSolid, Skin, Triangles};
+use super::pieces::Cutter;
+use super::raster::Drawing;
+use super::solid::{DrawnSolid, Triangles};
 use isosheet_files::DataError;
-use isosheet_mesh::vec3::dot;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
-
-/// How far faces darken each other, as part of what the picture shows.
-const REACH: f64 = 0.3;
 
 /// How far half-spaces are drawn around the middle, as part of what the picture shows.
 pub(super) const GROUND: f64 = 0.8;
 
-/// How far from its border a picture lets half-spaces fade out, as part of its smaller side.
-const BORDER: f64 = 0.15;
-
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
 pub(super) const GRAIN: f64 = 0.035;
-
-/// Largest edge over which the light on a body is interpolated at the rim of a shadow, where the openness
-/// would change by more than [`CONTRAST`] within a piece, as part of the height of the picture.
-const FINE_GRAIN: f64 = 0.007;
-
-/// A change of the light that is seen as an edge.
-const CONTRAST: f64 = 0.12;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
 pub(super) const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
-
-/// How much of the light and shade of a sheet is left where its colours are values, which shade would change.
-const SHADE_OF_VALUES: f64 = 0.5;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -212,7 +194,7 @@ pub fn render_folded(
     };
     let mut scene = painter.scene(picture);
     let pieces = painter.cutter(GRAIN).pieces(&mut scene);
-    let facets = painter.facets(pieces, &mut scene);
+    let facets = painter.facets(&pieces, &mut scene);
     let drawing = Drawing {
         size: look.size,
         facets,
@@ -224,17 +206,6 @@ pub fn render_folded(
     Ok(drawing.picture())
 }
 
-/// The light on a point with the unit normal `n` towards the viewer: that of the surroundings, which are
-/// brighter above, and that of a key light at the upper left.
-pub(super) fn light_on(camera: &Camera, n: &[f64; 3], p: &[f64; 3]) -> [f64; 2] {
-    let facing = dot(n, camera.viewer(p)).max(0.0);
-    let key = camera.direction([-0.66, 0.62, 0.42]);
-    [
-        0.34 + 0.10 * n[2] + 0.10 * facing,
-        0.68 * dot(n, key).max(0.0),
-    ]
-}
-
 /// A viewer, and how things look.
 pub(super) struct Painter<'a> {
     pub(super) camera: &'a Camera,
@@ -244,7 +215,7 @@ pub(super) struct Painter<'a> {
     /// The larger side of what the picture shows, metres.
     pub(super) scale: f64,
     /// What the sheet is coloured by instead of its sides.
-    colours: Option<&'a Colours>,
+    pub(super) colours: Option<&'a Colours>,
 }
 
 impl<'a> Painter<'a> {
@@ -297,101 +268,12 @@ impl<'a> Painter<'a> {
             q.nearness,
         ]
     }
-
-    /// The colour of a corner of a piece of a body or of a sheet, under light of this strength.
-    pub(super) fn colour(
-        &self,
-        piece: &Piece,
-        scene: &Triangles,
-        corner: usize,
-        shade: f64,
-    ) -> Light {
-        let vertex = piece.corners[corner];
-        let p = &scene.x[vertex];
-        let Some(skin) = scene.skin(piece.face) else {
-            let of_value = |colours: &Colours| colours.of_corner(piece.face, vertex);
-            if let Some(colour) = self.colours.and_then(of_value) {
-                let shade = 1.0 + SHADE_OF_VALUES * (shade - 1.0);
-                return light(colour).map(|c| c * shade as f32);
-            }
-            let sides = self.look.sides;
-            let side = sides[scene.sheet(piece.face) % sides.len()][usize::from(piece.back)];
-            return light(side).map(|c| c * shade as f32);
-        };
-        // What has faded out is white, as the background is.
-        let inside = if skin.is_plane() { self.inside(p) } else { 1.0 };
-        let strength = (inside * skin.strength(p)) as f32;
-        let own = match skin {
-            Skin::Shadow { .. } => [1.0; 3],
-            _ => light(self.look.body),
-        };
-        own.map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
-    }
-
-    /// 0 at the border of the picture and beyond, 1 well inside, and smooth between.
-    fn inside(&self, p: &[f64; 3]) -> f64 {
-        let ([x, y, _], [width, height]) = (self.place(p), self.size);
-        let distance = x.min(width - x).min(y).min(height - y);
-        let s = (distance / (BORDER * width.min(height))).clamp(0.0, 1.0);
-        s * s * (3.0 - 2.0 * s)
-    }
-
-    /// All pieces in their light; those of bodies at the rim of a shadow are cut once more.
-    fn facets(&self, mut pieces: Vec<Piece>, scene: &mut Triangles) -> Vec<Facet> {
-        let occlusion = Occlusion::new(scene, REACH * self.scale);
-        let mut around = occlusion.of_corners(&pieces, scene);
-        let is_rim = |k: usize, around: &[[Surroundings; 3]]| {
-            let open = around[k].map(|corner| corner.open);
-            let change = (0..3).map(|i| (open[i] - open[(i + 1) % 3]).abs());
-            pieces[k].face >= scene.own && change.fold(0.0, f64::max) > CONTRAST
-        };
-        let rims: Vec<bool> = (0..pieces.len()).map(|k| is_rim(k, &around)).collect();
-        let of_rim = pieces.iter().zip(&rims).filter(|(_, rim)| **rim);
-        let of_rim: Vec<Piece> = of_rim.map(|(piece, _)| *piece).collect();
-        let mut kept = rims.iter().map(|rim| !rim);
-        pieces.retain(|_| kept.next().unwrap_or(true));
-        let mut kept = rims.iter().map(|rim| !rim);
-        around.retain(|_| kept.next().unwrap_or(true));
-        let finer = self.cutter(FINE_GRAIN).finer(&of_rim, scene);
-        around.extend(occlusion.of_corners(&finer, scene));
-        pieces.extend(finer);
-        let facet = |(piece, around): (&Piece, &[Surroundings; 3])| {
-            let points = piece.corners.map(|v| scene.x[v]);
-            let flat = normal(&points);
-            let flat = if piece.back { flat.map(|c| -c) } else { flat };
-            let skin = scene.skin(piece.face);
-            let corners = [0, 1, 2].map(|k| {
-                let (Surroundings { open: o, normal }, p) = (around[k], &points[k]);
-                let [sky, sun] = match &skin {
-                    // White where nothing is above it.
-                    Some(Skin::Shadow { .. }) => [1.0, 0.0],
-                    None => light_on(self.camera, &normal, p),
-                    Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
-                };
-                let shade = sky * o + sun * (0.4 + 0.6 * o);
-                self.corner(p, self.colour(piece, scene, k, shade))
-            });
-            Facet {
-                corners,
-                face: piece.face as u32,
-            }
-        };
-        pieces.iter().zip(&around).map(facet).collect()
-    }
-
-    pub(super) fn corner(&self, p: &[f64; 3], light: Light) -> Corner {
-        let [x, y, nearness] = self.place(p);
-        Corner {
-            x,
-            y,
-            nearness,
-            light,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::Light;
+    use super::super::shading::CONTRAST;
     use super::*;
     use isosheet_mesh::Sheet;
     use isosheet_mesh::generate::isotropic_square;

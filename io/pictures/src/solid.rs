@@ -189,6 +189,18 @@ impl Skin {
         }
     }
 
+    /// The length of an edge in the direction in which the surface is curved, metres.
+    pub(super) fn across(&self, a: &[f64; 3], b: &[f64; 3]) -> f64 {
+        let d = sub(b, a);
+        match self {
+            Self::Tube { ends, .. } => {
+                let axis = unit(sub(ends[1], ends[0]));
+                length(&axpy(d, -dot(axis, d), axis))
+            }
+            _ => length(&d),
+        }
+    }
+
     /// How far a point outside of the body is from the curved part of its surface, metres.
     pub(super) fn distance(&self, p: &[f64; 3]) -> f64 {
         match self {
@@ -238,14 +250,6 @@ impl Skin {
     /// Whether it is a plane, which has no ends.
     pub(super) fn is_plane(&self) -> bool {
         matches!(self, Self::Ground { .. } | Self::Shadow { .. })
-    }
-
-    /// Up to which length in the picture edges stay whole, as part of that of other surfaces.
-    pub(super) fn grain(&self) -> f64 {
-        match self {
-            Self::Shadow { .. } => 0.3,
-            _ => 1.0,
-        }
     }
 
     /// How much of its colour a point of the surface has, from 0 to 1.
