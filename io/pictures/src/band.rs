@@ -1,7 +1,7 @@
 //! Some rows of a picture: what is seen at several points of each of its pixels.
 
 use super::canvas::Light;
-use super::raster::{Drawing, Facet, Stroke};
+use super::drawing::{Drawing, Facet, Stroke, bounds};
 use std::ops::Range;
 
 /// Samples for each pixel of the picture, each way.
@@ -306,10 +306,4 @@ fn range(low: f64, high: f64, first: usize, count: usize) -> Range<usize> {
     let end = (at(high).floor() + 1.0).max(0.0) as usize;
     let end = end.min(count);
     (at(low).ceil().max(0.0) as usize).min(end)..end
-}
-
-/// The smallest and the largest one.
-pub(super) fn bounds<const N: usize>(values: [f64; N]) -> [f64; 2] {
-    let low = values.into_iter().fold(f64::INFINITY, f64::min);
-    [low, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }

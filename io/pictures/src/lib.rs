@@ -7,6 +7,7 @@ mod canvas;
 mod colour_bar;
 mod colour_scale;
 mod colours;
+mod drawing;
 mod error;
 mod lines;
 mod memory;

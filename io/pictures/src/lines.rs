@@ -1,7 +1,7 @@
 //! Lines and dots of a picture.
 
 use super::canvas::light;
-use super::raster::{Corner, Stroke};
+use super::drawing::{Corner, Stroke};
 use super::sheet::{GRAIN, INK, Painter, SheetPicture};
 use super::solid::Triangles;
 use isosheet_mesh::vec3::axpy;

@@ -3,9 +3,10 @@
 use super::camera::{Camera, normal};
 use super::canvas::{Light, light};
 use super::colours::Colours;
+use super::drawing::{Corner, Facet};
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::Piece;
-use super::raster::{Corner, Facet, seen};
+use super::raster::seen;
 use super::sheet::Painter;
 use super::solid::{Skin, Triangles};
 use isosheet_mesh::vec3::dot;

@@ -3,9 +3,9 @@
 use super::camera::Camera;
 use super::canvas::{Image, light};
 use super::colours::Colours;
+use super::drawing::Drawing;
 use super::error::PictureError;
 use super::pieces::Cutter;
-use super::raster::Drawing;
 use super::solid::{DrawnSolid, Triangles};
 use isosheet_files::DataError;
 use isosheet_mesh::wording::{brief, counted, given};
