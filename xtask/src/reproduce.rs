@@ -3,7 +3,7 @@
 use crate::figures::{self, Made};
 use crate::interrupt;
 use crate::progress;
-use crate::report::{Options, Page, Part, Section, excerpt};
+use crate::report::{Effort, FullOptions, Page, Part, Section, excerpt};
 use crate::runs::scene_fingerprint;
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
@@ -22,7 +22,7 @@ pub(crate) struct ReproduceArgs {
     figures: Vec<u8>,
 
     #[command(flatten)]
-    options: Options,
+    options: FullOptions,
 }
 
 /// The last figure of the paper; Fig. 10 is a table.
@@ -90,6 +90,12 @@ fn write(store: &Store, scenes: u64) -> Result<()> {
             i { "Modeling dynamic developable meshes by the Hamilton principle" } ", Computer-Aided Design 39 (2007) "
             "719–731, and what is measured here. Pictures open in full; those of runs open pages that play them in 3D, and "
             code { "isosheet simulate" } " runs their scene files. SI units, z upwards."
+        }
+        @if store.effort == Effort::Standard {
+            p {
+                "Each run is shown by itself. " code { "cargo xtask reproduce-figures --full" } " adds eleven neighbours to most "
+                "of them, which start a thousandth of an edge beside, tells medians and ranges, and checks what figures say of them."
+            }
         }
         @for record in &records { (record.section) }
     };

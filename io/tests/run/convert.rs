@@ -461,7 +461,7 @@ fn numbered_files_of_an_earlier_export_are_removed() {
     assert_eq!(names(&dir.join("film")), left);
     fs::create_dir(dir.join("run/obj")).unwrap();
     let said = refused(dir, &["convert", "run", "run/obj.obj", "--every", "2"], 2);
-    assert!(said.contains("those of the run itself"), "{said}");
+    assert!(said.contains("files of the run itself"), "{said}");
 }
 
 /// A program in place of ffmpeg keeps what it is told and what it is given.

@@ -32,7 +32,7 @@ pub(crate) struct FullOptions {
     #[command(flatten)]
     pub(crate) options: Options,
 
-    /// Longer runs and finer meshes, for as long as it takes
+    /// Longer runs, finer meshes and ensembles, for as long as it takes
     #[arg(long, conflicts_with = "quick")]
     pub(crate) full: bool,
 }

@@ -25,9 +25,11 @@ pub(crate) struct Ensemble<T> {
     members: Vec<T>,
 }
 
-/// How many members an ensemble has where a run takes seconds.
+/// How many members an ensemble has where a run takes seconds: the run that is shown alone, unless the report
+/// has all the time that it takes.
 pub(crate) fn members(effort: Effort) -> usize {
-    effort.quick_or(MEMBERS[1], MEMBERS[0])
+    let [many, quick] = MEMBERS;
+    effort.pick(quick, 1, many)
 }
 
 /// What ensembles are, for the captions of tables.
@@ -59,6 +61,10 @@ impl<T: Serialize + DeserializeOwned + Send> Ensemble<T> {
             title: title.clone(),
             options: json!({ "scene": run.scene.options(), "members": members }),
         };
+        if members == 1 {
+            let members = vec![measure(run)?];
+            return Ok(Self { members });
+        }
         let neighbours: Vec<T> = store.keep(&unit, |_| {
             let bar = Progress::start(title, members - 1);
             let one = |seed: usize| {

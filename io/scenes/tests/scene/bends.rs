@@ -308,7 +308,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
         ("curl = { along = [1, 0, 0], curvature = 1, radius = 1 }".to_owned(), "the same curvature"),
         (
             "curl = { twist = 1, shape = { path = \"a.obj\" } }".to_owned(),
-            "by numbers besides",
+            "by a shape and by numbers",
         ),
         (
             "bending = \"none\"\ncurl = { along = [1, 0, 0], radius = 1 }".to_owned(),
