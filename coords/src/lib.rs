@@ -15,6 +15,9 @@
 //! square sparse matrix `A = [G; S]` ([`Linearised`]), and the mass-matrix solve of any chart is one
 //! solve with the saddle-point matrix ([`SaddlePoint`]).
 //!
+//! [`unroll`] assigns the vertices of a developable surface coordinates in the plane: its pattern, cut open where
+//! it has to be.
+//!
 //! States are flat slices of positions, three values per vertex; pinned vertices have no unknowns
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`], a crate of its own.
 //!
@@ -60,6 +63,7 @@ mod select;
 mod system;
 #[cfg(test)]
 mod testing;
+mod unroll;
 mod vec3;
 
 pub use assignment::{
@@ -80,6 +84,7 @@ pub use realise::{FrontMap, RealiseError, RealiseOptions, RealiseReport};
 pub use row_pattern::RowPattern;
 pub use saddle::{SaddlePoint, apply_mass};
 pub use system::{RodSystem, SystemError};
+pub use unroll::{Piece, UnrollError, UnrollOptions, Unrolled, unroll};
 
 /// Sparse direct solvers.
 pub use isosheet_linalg as linalg;

@@ -12,7 +12,7 @@
 //!   from developable.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
 //! * [`Part`]: one of several sheets in their union.
-//! * [`orient_consistently`]: repair on request.
+//! * [`orient_consistently`]: repair on request; [`Opened`]: a mesh that is cut along edges.
 //! * [`generate`]: squares, grids and other sheets made by formula; [`origami`]: how some of them fold.
 //!
 //! Conventions: SI units, radians, `f64`; positions are flat arrays `x0 y0 z0 x1 y1 z1 ...`; faces are
@@ -36,6 +36,7 @@ pub mod generate;
 mod ids;
 mod lengths;
 mod mass;
+mod opened;
 pub mod origami;
 
 mod part;
@@ -64,6 +65,7 @@ pub use flat_vertex::{FlatCrease, FlatFoldingLaw};
 pub use ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use lengths::LengthConstraints;
 pub use mass::{MassKind, MassMatrix};
+pub use opened::Opened;
 pub use part::Part;
 pub use repair::orient_consistently;
 pub use rulings::{Ruling, principal_values};

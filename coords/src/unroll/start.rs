@@ -1,0 +1,143 @@
+//! Layouts to start from.
+
+use super::vec2::Point;
+use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_mesh::{FaceId, Sheet, VertexId};
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+/// Lays face after face beside one that lies already, with the lengths of its edges, breadth first: exact for
+/// what is developable.
+pub(super) fn face_by_face(sheet: &Sheet) -> Vec<Point> {
+    let t = sheet.topology();
+    let length = |a: VertexId, b: VertexId| {
+        let edge = t.find_edge(a, b);
+        edge.map_or(0.0, |e| sheet.lengths()[e.index()])
+    };
+    let mut points: Vec<Option<Point>> = vec![None; t.vertex_count()];
+    let mut is_laid = vec![false; t.face_count()];
+    let first = middle(sheet);
+    let [a, b, _] = t.faces()[first.index()];
+    points[a.index()] = Some([0.0; 2]);
+    points[b.index()] = Some([length(a, b), 0.0]);
+    is_laid[first.index()] = true;
+    let mut open = VecDeque::from([first]);
+    while let Some(f) = open.pop_front() {
+        let corners = t.faces()[f.index()];
+        for k in 0..3 {
+            let [a, b, c] = [k, k + 1, k + 2].map(|j| corners[j % 3]);
+            let (Some(p), Some(q), None) =
+                (points[a.index()], points[b.index()], points[c.index()])
+            else {
+                continue;
+            };
+            points[c.index()] = Some(third(p, q, [length(a, b), length(b, c), length(c, a)]));
+        }
+        for e in t.face_edges(f) {
+            for next in t.edge_faces(e).into_iter().flatten() {
+                if !std::mem::replace(&mut is_laid[next.index()], true) {
+                    open.push_back(next);
+                }
+            }
+        }
+    }
+    points.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// The corner on the left of the side from `p` to `q` of a triangle with the lengths `pq`, `qr` and `rp`.
+fn third(p: Point, q: Point, [pq, qr, rp]: [f64; 3]) -> Point {
+    // Of the factors of Heron's formula the differences are formed as Kahan does.
+    let mut sides = [pq, qr, rp];
+    sides.sort_by(|a, b| b.total_cmp(a));
+    let [a, b, c] = sides;
+    let product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+    let height = 0.5 * product.max(0.0).sqrt() / pq;
+    let foot = 0.5 * (pq + (rp - qr) * (rp + qr) / pq);
+    let [x, y] = [q[0] - p[0], q[1] - p[1]].map(|c| c / pq);
+    [p[0] + foot * x - height * y, p[1] + foot * y + height * x]
+}
+
+/// A face in the middle: the last one that is reached from the boundary.
+fn middle(sheet: &Sheet) -> FaceId {
+    let t = sheet.topology();
+    let at_boundary = |f: &FaceId| t.face_edges(*f).iter().any(|e| t.is_boundary_edge(*e));
+    let mut open: VecDeque<FaceId> = t.face_ids().filter(at_boundary).collect();
+    let mut is_reached = vec![false; t.face_count()];
+    open.iter().for_each(|f| is_reached[f.index()] = true);
+    let mut last = FaceId(0);
+    while let Some(f) = open.pop_front() {
+        last = f;
+        for e in t.face_edges(f) {
+            for next in t.edge_faces(e).into_iter().flatten() {
+                if !std::mem::replace(&mut is_reached[next.index()], true) {
+                    open.push_back(next);
+                }
+            }
+        }
+    }
+    last
+}
+
+/// The layout of a disk whose boundary is a circle with the area of the sheet, and where each vertex inside is
+/// the mean of its neighbours: no face is turned over (Tutte, *How to draw a graph*, 1963).
+///
+/// # Errors
+/// [`LinalgError`] for a sheet without a boundary.
+pub(super) fn on_a_disk(sheet: &Sheet) -> Result<Vec<Point>, LinalgError> {
+    let t = sheet.topology();
+    let loops = t.boundary_loops();
+    let length = |own: &[VertexId], k: usize| {
+        let edge = t.find_edge(own[k], own[(k + 1) % own.len()]);
+        edge.map_or(0.0, |e| sheet.lengths()[e.index()])
+    };
+    let whole = |own: &[VertexId]| (0..own.len()).map(|k| length(own, k)).sum::<f64>();
+    let outer = loops.iter().max_by(|a, b| whole(a).total_cmp(&whole(b)));
+    let outer = outer.map_or(&[][..], Vec::as_slice);
+    let mut points = vec![[0.0; 2]; t.vertex_count()];
+    let mut unknown: Vec<Option<u32>> = vec![None; t.vertex_count()];
+    let (radius, turn) = ((2.0 * sheet.area() / TAU).sqrt(), TAU / whole(outer));
+    let mut angle = 0.0_f64;
+    let mut is_outer = vec![false; t.vertex_count()];
+    for (k, v) in outer.iter().enumerate() {
+        points[v.index()] = [radius * angle.cos(), radius * angle.sin()];
+        is_outer[v.index()] = true;
+        angle += turn * length(outer, k);
+    }
+    let inside: Vec<VertexId> = t.vertex_ids().filter(|v| !is_outer[v.index()]).collect();
+    if inside.is_empty() {
+        return Ok(points);
+    }
+    for (k, v) in inside.iter().enumerate() {
+        unknown[v.index()] = Some(k as u32);
+    }
+    let mut entries = Vec::new();
+    let mut values = Vec::new();
+    let mut sides = [vec![0.0; inside.len()], vec![0.0; inside.len()]];
+    for (k, &v) in inside.iter().enumerate() {
+        entries.push((k as u32, k as u32));
+        values.push(t.degree(v) as f64);
+        for w in t.neighbours(v) {
+            match unknown[w.index()] {
+                Some(j) if j < k as u32 => {
+                    entries.push((k as u32, j));
+                    values.push(-1.0);
+                }
+                Some(_) => {}
+                None => (0..2).for_each(|axis| sides[axis][k] += points[w.index()][axis]),
+            }
+        }
+    }
+    let (pattern, slots) = Pattern::from_entries(inside.len(), inside.len(), &entries);
+    let mut matrix = SparseLlt::new(pattern)?;
+    for (slot, value) in slots.iter().zip(values) {
+        matrix.values_mut()[*slot as usize] += value;
+    }
+    matrix.factorize()?;
+    for (axis, side) in sides.iter_mut().enumerate() {
+        matrix.solve(side);
+        for (v, value) in inside.iter().zip(side.iter()) {
+            points[v.index()][axis] = *value;
+        }
+    }
+    Ok(points)
+}
