@@ -8,6 +8,9 @@ mod entity;
 mod groups;
 mod layers;
 mod spline;
+mod writer;
+
+pub(crate) use writer::text;
 
 use super::lines::{Drawing, Pen};
 use super::unit::DrawingUnit;

@@ -10,8 +10,10 @@ mod options;
 mod report;
 mod rules;
 mod selector;
+mod stroke;
 pub mod svg;
 mod unit;
+mod written;
 
 pub use class::LineClass;
 pub use colour::Colour;
@@ -22,4 +24,6 @@ pub use options::DrawingOptions;
 pub use report::{ClassCount, DrawingReport, Places};
 pub use rules::LineRules;
 pub use selector::{Selector, listed, refuse_idle};
+pub use stroke::Stroke;
 pub use unit::{DrawingUnit, Length};
+pub use written::write_drawing;

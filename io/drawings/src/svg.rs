@@ -9,6 +9,9 @@ mod path;
 mod shapes;
 mod style;
 mod style_sheet;
+mod writer;
+
+pub(crate) use writer::text;
 
 use super::colour::Colour;
 use super::lines::{Drawing, DrawnLine, Pen};
