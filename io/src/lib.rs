@@ -39,6 +39,7 @@ mod simulate;
 mod start;
 mod sweep;
 mod trace;
+mod unroll;
 mod workers;
 mod write;
 
@@ -60,6 +61,7 @@ Examples:
                                                run the scene with both values
   isosheet mesh box.svg -o box.fold --spacing 5mm
                                                make a mesh of a drawing, with its creases and cuts
+  isosheet unroll cone.obj -o cone.svg         lay a mesh out in the plane, as a pattern to cut
   isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
 
 /// Simulates sheets that bend and crease and do not stretch.
@@ -104,6 +106,8 @@ enum Command {
     Convert(convert::Convert),
     /// Make a triangle mesh of a drawing, with its creases, cuts and holes
     Mesh(mesh::MeshArgs),
+    /// Lay a mesh out in the plane as a pattern to cut: a drawing in true size, with creases and rulings
+    Unroll(unroll::Unroll),
     /// Write a commented scene to start from
     New(start::New),
     /// Print the completion script of a shell
@@ -149,6 +153,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
         Command::Info(info) => info.run(),
         Command::Convert(convert) => convert.run(),
         Command::Mesh(mesh) => mesh.run(),
+        Command::Unroll(unroll) => unroll.run(),
         Command::New(new) => new.run(),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -76,6 +76,39 @@ pub enum UnrollError {
     Linalg(#[from] LinalgError),
 }
 
+impl UnrollError {
+    /// The error with other numbers of vertices: those of the mesh that a sheet was made of.
+    pub fn numbered(self, number: impl Fn(VertexId) -> VertexId) -> Self {
+        match self {
+            Self::Curved {
+                ends,
+                strain,
+                limit,
+                count,
+                vertex,
+                deficit,
+            } => Self::Curved {
+                ends: ends.map(&number),
+                strain,
+                limit,
+                count,
+                vertex: number(vertex),
+                deficit,
+            },
+            Self::TurnedOver {
+                face,
+                vertex,
+                deficit,
+            } => Self::TurnedOver {
+                face,
+                vertex: number(vertex),
+                deficit,
+            },
+            other => other,
+        }
+    }
+}
+
 impl Advice for UnrollError {
     fn advice(&self) -> Option<&'static str> {
         Some(match self {

@@ -169,6 +169,21 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     }
 }
 
+/// Writes a flat mesh as [`write_mesh`]. A FOLD file has the positions of its vertices when it is folded (three
+/// numbers each, metres) as a second frame.
+///
+/// # Errors
+/// [`ExportError`]; nothing is written then.
+pub fn write_pattern(path: &Path, mesh: &MeshFile, folded: &[f64]) -> Result<(), ExportError> {
+    let format = by_extension(path, &ExportMeshFormat::ALL, ExportMeshFormat::extension)?;
+    if format != ExportMeshFormat::Fold {
+        return write_mesh(path, mesh);
+    }
+    error::check_mesh(&mesh.positions, &mesh.faces)?;
+    error::check_mesh(folded, &mesh.faces)?;
+    fold::write_folded(path, mesh, folded)
+}
+
 /// Writes one frame of a moving sheet, atomically, as one file of the format that the extension names
 /// ([`ExportMeshFormat`]). OBJ, glTF and USD files have texture coordinates ([`Series::uv`]), glTF and USD
 /// files the bodies too.

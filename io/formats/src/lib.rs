@@ -15,7 +15,7 @@ pub use events::{EventChange, EventKind, EventRow, EventWriter, read_events};
 pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, thickened, write_frame,
-    write_mesh, write_obj, write_series,
+    write_mesh, write_obj, write_pattern, write_series,
 };
 pub use history::{HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};

@@ -42,10 +42,11 @@ struct FoldFileFrame<'a> {
     frame_parent: u32,
     frame_inherit: bool,
     frame_classes: &'a [&'a str],
-    #[serde(rename = "isosheet:time")]
-    time: f64,
+    #[serde(rename = "isosheet:time", skip_serializing_if = "Option::is_none")]
+    time: Option<f64>,
     vertices_coords: &'a [[f64; 3]],
-    #[serde(rename = "edges_foldAngle")]
+    /// Left out where they are those of the first frame.
+    #[serde(rename = "edges_foldAngle", skip_serializing_if = "Vec::is_empty")]
     fold_angles: Vec<f64>,
 }
 
@@ -67,7 +68,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
             frame_parent: 0,
             frame_inherit: true,
             frame_classes: FOLDED,
-            time,
+            time: Some(time),
             vertices_coords: x.as_chunks().0,
             fold_angles: degrees(frame).collect(),
         }
@@ -102,6 +103,32 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
 /// pattern fold by 180 degrees, flat edges by 0, and the angle of others is null. Edges that were not read
 /// are `B` if they have one face, and `U` otherwise.
 pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
+    write_frames(path, mesh, Vec::new())
+}
+
+/// Writes a mesh as [`write_mesh`], and where its vertices are when it is folded as a second frame.
+pub(super) fn write_folded(
+    path: &Path,
+    mesh: &MeshFile,
+    folded: &[f64],
+) -> Result<(), ExportError> {
+    let frame = FoldFileFrame {
+        frame_parent: 0,
+        frame_inherit: true,
+        frame_classes: FOLDED,
+        time: None,
+        vertices_coords: folded.as_chunks().0,
+        fold_angles: Vec::new(),
+    };
+    write_frames(path, mesh, vec![frame])
+}
+
+/// Writes a mesh with frames that follow it.
+fn write_frames(
+    path: &Path,
+    mesh: &MeshFile,
+    file_frames: Vec<FoldFileFrame<'_>>,
+) -> Result<(), ExportError> {
     let points = mesh.positions.as_chunks::<3>().0;
     let mut faces_at: BTreeMap<[u32; 2], usize> = BTreeMap::new();
     for &[a, b, c] in &mesh.faces {
@@ -154,7 +181,7 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         lines,
         lines_of_edges,
         faces_vertices: &mesh.faces,
-        file_frames: Vec::new(),
+        file_frames,
     };
     Ok(write_atomically(path, |w| write_json(w, &file))?)
 }

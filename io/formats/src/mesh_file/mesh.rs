@@ -26,6 +26,18 @@ pub struct FileCrease {
     pub drawn: Option<u32>,
 }
 
+impl FileCrease {
+    /// An edge that follows no line of a drawing.
+    pub fn new(ends: [u32; 2], assignment: EdgeAssignment, angle: Option<f64>) -> Self {
+        Self {
+            ends,
+            assignment,
+            angle,
+            drawn: None,
+        }
+    }
+}
+
 /// What reading changed besides cutting polygons into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
