@@ -15,7 +15,7 @@ use isosheet_formats::{
     ExportError, ExportMeshFormat, FoldFrame, MeshFile, MeshFileProblem, MeshOptions,
     read_mesh_with, write_pattern,
 };
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{EdgeId, Opened, Sheet, VertexId};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -173,6 +173,7 @@ impl Unroll {
             folds: &folds,
             rulings,
             options: &options,
+            unit_is_assumed: !mesh.in_metres && self.unit.is_none(),
         };
         to_stdout(&format!("{}{}", what_reading_did(&mesh), report.text()))
     }
@@ -266,14 +267,19 @@ fn failed(error: UnrollError) -> Failure {
             strain,
             ..
         } => {
-            // Accepted by rounding upwards to two digits.
-            let size = 10_f64.powf(strain.abs().log10().floor() - 1.0);
-            let accepted = (strain.abs() / size).ceil() * size;
-            let [a, b] = ends.map(|v| v.0);
-            Failure::of(Code::Input, &error).remedy(format!(
-                "cut the sheet at {vertex} by `--cut A-B,...`, let `--crease-angle` be smaller so that cuts lead to \
-                 vertices on softer folds, or accept the strain of edge {a}-{b} by `--strain {accepted:.1e}`"
-            ))
+            let mut remedy = format!(
+                "cut the sheet at {vertex} by `--cut A-B,...`, or let `--crease-angle` be smaller so that cuts lead to \
+                 vertices on softer folds"
+            );
+            if strain.abs() < 1.0 {
+                // Rounded upwards to two digits.
+                let digit = 10_f64.powf(strain.abs().log10().floor() - 1.0);
+                let accepted = brief((strain.abs() / digit).ceil() * digit);
+                let [a, b] = ends.map(|v| v.0);
+                remedy +=
+                    &format!(", or accept the strain of edge {a}-{b} by `--strain {accepted}`");
+            }
+            Failure::of(Code::Input, &error).remedy(remedy)
         }
         error => Failure::of(Code::Input, &error),
     }

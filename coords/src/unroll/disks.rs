@@ -33,7 +33,21 @@ pub(super) struct Disks<'a> {
 
 impl Disks<'_> {
     /// The pieces of a connected part.
+    ///
+    /// Deficits that are small one by one may add up. Where they do, the part is cut to all that are larger
+    /// than their share of what is allowed.
     pub(super) fn of(&self, part: &Patch) -> Result<Vec<Laid>, UnrollError> {
+        let limit = self.options.largest_deficit();
+        let first = self.cut_to(part, limit);
+        let Err(UnrollError::Curved { .. } | UnrollError::TurnedOver { .. }) = first else {
+            return first;
+        };
+        let (count, ..) = worst(part);
+        self.cut_to(part, limit / count.max(1) as f64).or(first)
+    }
+
+    /// The pieces of a connected part, cut to corners with deficits of more than `limit`, radians.
+    fn cut_to(&self, part: &Patch, limit: f64) -> Result<Vec<Laid>, UnrollError> {
         let (sheet, t) = (&part.sheet, part.sheet.topology());
         let angles: Vec<Option<f64>> = t
             .edge_ids()
@@ -47,7 +61,7 @@ impl Disks<'_> {
                 false => self.deficits[part.vertices[v.index()] as usize],
             })
             .collect();
-        let corners = self.corners(sheet, &angles, &own);
+        let corners = self.corners(sheet, &angles, &own, limit);
         // Edges that were to be cut and are not, as both ends are inside.
         let given: Vec<bool> = t
             .edge_ids()
@@ -91,11 +105,16 @@ impl Disks<'_> {
         Ok(rejoined.unwrap_or(laid))
     }
 
-    /// The vertices inside to which the part is cut: those with a deficit that no strain makes up for, where
-    /// they are on a crease, or the only ones around, as the apex of a cone is. Elsewhere the part is curved.
-    fn corners(&self, sheet: &Sheet, angles: &[Option<f64>], deficits: &[f64]) -> Vec<bool> {
+    /// The vertices inside to which the part is cut: those with a deficit of more than a limit, where they are
+    /// on a crease, or the only ones around, as the apex of a cone is. Elsewhere the part is curved.
+    fn corners(
+        &self,
+        sheet: &Sheet,
+        angles: &[Option<f64>],
+        deficits: &[f64],
+        limit: f64,
+    ) -> Vec<bool> {
         let t = sheet.topology();
-        let limit = self.options.largest_deficit();
         let is_large = |v: VertexId| deficits[v.index()].abs() > limit;
         let is_crease =
             |e: &EdgeId| angles[e.index()].is_some_and(|angle| angle.abs() >= self.options.crease);
@@ -109,12 +128,21 @@ impl Disks<'_> {
     /// The layout of a disk, with its largest strain.
     fn lay_out(&self, patch: &Patch) -> Result<(Vec<Point>, (EdgeId, f64)), UnrollError> {
         let sheet = &patch.sheet;
+        let mut equations = LeastSquares::new(sheet)?;
         let mut points = start::face_by_face(sheet);
-        if turned_over(sheet, &points).is_some() {
-            points = start::on_a_disk(sheet)?;
+        let is_turned = turned_over(sheet, &points).is_some();
+        equations.fit(&mut points)?;
+        let mut strain = largest_strain(sheet, &points);
+        let is_good =
+            strain.1.abs() <= self.options.strain && turned_over(sheet, &points).is_none();
+        if is_turned && !is_good {
+            let mut other = start::on_a_disk(sheet)?;
+            equations.fit(&mut other)?;
+            let own = largest_strain(sheet, &other);
+            if turned_over(sheet, &other).is_none() || own.1.abs() < strain.1.abs() {
+                (points, strain) = (other, own);
+            }
         }
-        LeastSquares::new(sheet)?.fit(&mut points)?;
-        let strain = largest_strain(sheet, &points);
         if strain.1.abs() > self.options.strain {
             let (count, vertex, deficit) = worst(patch);
             return Err(UnrollError::Curved {

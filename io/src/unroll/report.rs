@@ -27,6 +27,8 @@ pub(super) struct Report<'a> {
     /// How many rulings are drawn; `None` where none could be.
     pub(super) rulings: Option<usize>,
     pub(super) options: &'a UnrollOptions,
+    /// Whether neither the file nor the command says how long its unit is.
+    pub(super) unit_is_assumed: bool,
 }
 
 impl Report<'_> {
@@ -70,7 +72,7 @@ impl Report<'_> {
                 let largest = largest.fold([0.0; 2], |m, s| if area(s) > area(m) { s } else { m });
                 let count = several.len();
                 format!(
-                    "{count} pieces of {faces}, the largest one {}",
+                    "{count} pieces of {faces} together, the largest one {}",
                     size(largest)
                 )
             }
@@ -176,6 +178,12 @@ impl Report<'_> {
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let opened = self.opened;
+        if self.unit_is_assumed {
+            notes.push(
+                "the file does not say how long its unit is, which is taken for a metre: `--unit mm`"
+                    .to_owned(),
+            );
+        }
         if !opened.reversed.is_empty() {
             let faces = counted(opened.reversed.len(), "face was", "faces were");
             notes.push(format!("{faces} wound against the others, and turned over"));
@@ -196,7 +204,7 @@ impl Report<'_> {
             notes.push(format!(
                 "{} less than {} degrees, by {} at most, and no crease: `--crease-angle` draws smaller ones",
                 counted(count, "edge folds", "edges fold"),
-                digits(self.options.crease.to_degrees()),
+                brief(self.options.crease.to_degrees()),
                 brief(most.to_degrees())
             ));
         }
