@@ -1,6 +1,7 @@
 //! Sheets made by formula.
 //!
-//! All are flat in the plane z = 0 with faces counter-clockwise as seen from +z, and check their arguments.
+//! All but [`strip_between`] are flat in the plane z = 0 with faces counter-clockwise as seen from +z. All check
+//! their arguments.
 
 mod delaunay;
 mod error;
@@ -12,7 +13,9 @@ mod origami;
 mod outline;
 mod refine;
 mod round;
+mod space_curve;
 mod square_twist;
+mod strip_between;
 mod waterbomb;
 mod yoshimura;
 
@@ -27,6 +30,7 @@ pub use outline::{polygon_rings, regular_outline};
 pub use refine::{refine_isotropic, split_1_4};
 pub use round::{annulus, disk, fan};
 pub use square_twist::square_twist;
+pub use strip_between::{RuledStrip, strip_between};
 pub use waterbomb::waterbomb;
 pub use yoshimura::yoshimura;
 

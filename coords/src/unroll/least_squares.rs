@@ -11,6 +11,10 @@ const STEPS: usize = 200;
 /// Below this relative change of positions, a step of Newton's method leaves round-off alone.
 const SMALL: f64 = 1e-9;
 
+/// Three steps that gain less than this part of the sum of squares are the last ones: strains that are left are
+/// known to more digits than a limit for them has.
+const IDLE: f64 = 1e-6;
+
 /// The lengths of a sheet in the plane, as a problem of least squares.
 ///
 /// The sum of `w r^2` over the edges is minimised, with the strain `r = (|p - q|^2 / l^2 - 1) / 2` and weights
@@ -67,7 +71,7 @@ impl<'a> LeastSquares<'a> {
         let size = points.iter().flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
         let keeps_sides = turned_over(self.sheet, points).is_none();
         let mut old = self.value(points);
-        let (mut damping, mut small) = (0.0, 0);
+        let (mut damping, mut small, mut idle) = (0.0, 0, 0);
         for _ in 0..STEPS {
             let step = match self.step(points, damping) {
                 Ok(step) => step,
@@ -114,8 +118,9 @@ impl<'a> LeastSquares<'a> {
             let gain = old - value;
             old = value;
             small += usize::from(change < SMALL);
+            idle = if gain <= IDLE * old { idle + 1 } else { 0 };
             // Quadratic convergence is at round-off after another step.
-            if small > 2 || change < SMALL && gain.abs() <= 1e-12 * old || change < f64::EPSILON {
+            if small > 2 || idle > 2 || change < f64::EPSILON {
                 return Ok(());
             }
         }

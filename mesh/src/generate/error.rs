@@ -74,6 +74,16 @@ pub enum GenerateError {
         /// What is wrong there.
         problem: &'static str,
     },
+    /// Points do not describe a curve.
+    #[error("the {name} curve is unusable at point {point}: {problem}")]
+    Curve {
+        /// Which curve.
+        name: &'static str,
+        /// Which point, from 0.
+        point: usize,
+        /// What is wrong there.
+        problem: &'static str,
+    },
     /// The result would be too large to handle.
     #[error("the sheet would have {faces} faces, more than the {limit} that are allowed")]
     TooManyFaces {
@@ -94,6 +104,9 @@ impl Advice for GenerateError {
             Self::Size { .. } => Some("give a positive, finite number of metres"),
             Self::Order { .. } => Some("give a smaller value for the first"),
             Self::Outline { .. } => Some("give the corners of a simple polygon in order"),
+            Self::Curve { .. } => Some(
+                "give the points of a curve in order; a closed one has its first point once more at its end",
+            ),
             Self::TooManyFaces { .. } => Some("use fewer cells or a lower level"),
             Self::Mesh(error) => error.advice(),
             Self::Assignment { .. } => None,

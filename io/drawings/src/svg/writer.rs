@@ -12,6 +12,23 @@ const MARGIN: f64 = 5.0;
 pub(crate) fn text(lines: &[Stroke]) -> String {
     let [x, y] = bounds(lines).map(|range| range.map(|c| MILLIMETRES * c));
     let [width, height] = [x, y].map(|[low, high]| high - low + 2.0 * MARGIN);
+    // Thirteen digits of the longer side: the others are round-off.
+    let digits = 13.0 - width.max(height).log10().ceil();
+    let digits = digits.max(0.0) as usize;
+    let number = |value: f64| {
+        let text = format!("{value:.digits$}");
+        let text = if digits > 0 {
+            text.trim_end_matches('0').trim_end_matches('.')
+        } else {
+            &text
+        };
+        if text == "-0" {
+            "0".to_owned()
+        } else {
+            text.to_owned()
+        }
+    };
+    let [width, height] = [width, height].map(number);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" \
          xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"{width}mm\" \
@@ -20,7 +37,11 @@ pub(crate) fn text(lines: &[Stroke]) -> String {
     // Of the page y runs downwards.
     let place = |p: &[f64; 2]| {
         let [px, py] = p.map(|c| MILLIMETRES * c);
-        format!("{} {}", px - x[0] + MARGIN, y[1] - py + MARGIN)
+        format!(
+            "{} {}",
+            number(px - x[0] + MARGIN),
+            number(y[1] - py + MARGIN)
+        )
     };
     for (class, name, colour, _) in LAYERS {
         // Lines of one opacity are one path.
