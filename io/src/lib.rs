@@ -37,6 +37,7 @@ mod progress;
 mod reading;
 mod simulate;
 mod start;
+mod strip;
 mod sweep;
 mod trace;
 mod unroll;

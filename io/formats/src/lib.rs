@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod curve_file;
 mod drawing;
 mod events;
 mod export;
@@ -10,6 +11,7 @@ mod mesh_file;
 mod motion_file;
 mod trajectory;
 
+pub use curve_file::{parse_curve, read_curve};
 pub use drawing::{DrawingError, DrawnEdges, DrawnSheet, mesh_drawing};
 pub use events::{EventChange, EventKind, EventRow, EventWriter, read_events};
 pub use export::{

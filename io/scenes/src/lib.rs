@@ -65,6 +65,7 @@ mod meshes {
     pub(crate) mod pattern;
     pub(crate) mod selection;
     pub(crate) mod sequence;
+    pub(crate) mod strip_between;
     pub(crate) mod up_axis;
 }
 
@@ -212,6 +213,7 @@ pub use meshes::pattern::{
 };
 pub use meshes::selection::Selection;
 pub use meshes::sequence::{MeshFrames, Outside, Sequence};
+pub use meshes::strip_between::{CurveFile, StripBetween, StripCurve};
 pub use meshes::up_axis::UpAxis;
 pub use methods::chart::{
     ChartEquations, ChartKey, ChartPositions, ChartScheme, ChartSolver, Coordinates,

@@ -7,6 +7,7 @@ use crate::meshes::outline::Outline;
 use crate::meshes::pattern::{
     DegreeFourKey, EdgeRoles, Hypar, Kresling, MiuraKey, SquareTwist, Waterbomb, Yoshimura,
 };
+use crate::meshes::strip_between::StripBetween;
 use crate::words::error::SceneError;
 use crate::words::key::Key;
 use crate::words::part::Part;
@@ -19,7 +20,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Where a mesh comes from. Generated ones are flat in the plane z = 0.
+/// Where a mesh comes from. Generated ones are flat in the plane z = 0, but for a strip between two curves.
 ///
 /// ```toml
 /// [sheet]
@@ -115,6 +116,8 @@ pub enum Mesh {
     Hypar(Hypar),
     /// The square twist, with mountains and valleys.
     SquareTwist(SquareTwist),
+    /// The developable strip between two curves, in space.
+    StripBetween(StripBetween),
     /// The triangles of a small mesh, or of a program.
     Triangles {
         /// Coordinates of the vertices, metres.
@@ -217,6 +220,7 @@ impl Mesh {
             Self::Kresling(_) => "kresling",
             Self::Hypar(_) => "hypar",
             Self::SquareTwist(_) => "square_twist",
+            Self::StripBetween(_) => "strip_between",
             Self::Triangles { .. } => "triangles",
             Self::File(_) => "file",
             Self::Drawing(_) => "drawing",
@@ -304,7 +308,9 @@ impl Mesh {
                 ("square", Length(twist.square)),
                 ("angle", Angle(twist.angle, 90.0)),
             ],
-            Self::Triangles { .. } | Self::File(_) | Self::Drawing(_) => Vec::new(),
+            Self::StripBetween(_) | Self::Triangles { .. } | Self::File(_) | Self::Drawing(_) => {
+                Vec::new()
+            }
         }
     }
 
@@ -325,6 +331,7 @@ impl Mesh {
                     sector.check(key.name("sectors").entry(k), checks);
                 }
             }
+            Self::StripBetween(strip) => strip.check(&key, checks),
             Self::Triangles { vertices, .. } => {
                 checks.points(key.name("vertices"), vertices);
             }
@@ -410,6 +417,9 @@ impl Mesh {
                     &key,
                     generate::square_twist(p.side, p.square, p.angle.to_radians()),
                 );
+            }
+            Self::StripBetween(strip) => {
+                return Ok(RestMesh::plain(strip.strip(&key, files)?.sheet));
             }
             Self::Triangles { vertices, faces } => {
                 let sheet = Sheet::new(vertices.as_flattened().to_vec(), faces);

@@ -91,6 +91,7 @@ impl Mesh {
             Self::Yoshimura(pattern) => 2.0 * product(pattern.columns, pattern.rows),
             Self::Kresling(pattern) => 2.0 * product(pattern.columns, pattern.rows),
             Self::Hypar(pattern) => 8.0 * pattern.rings as f64,
+            Self::StripBetween(strip) => 2.0 * product(strip.columns, strip.rows),
             Self::Triangles { faces, .. } => faces.len() as f64,
             Self::Octagon { .. }
             | Self::DegreeFour(_)
