@@ -11,11 +11,8 @@ use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Strains below are round-off: lengths are kept.
-const KEPT: f64 = 1e-12;
-
-/// Angle deficits below are round-off, radians: of coordinates with seven digits.
-const DEVELOPABLE: f64 = 1e-6;
+/// Strains, and angle deficits in radians, below are round-off of coordinates with seven digits.
+const ROUND_OFF: f64 = 1e-6;
 
 /// What was read, cut and laid out.
 pub(super) struct Report<'a> {
@@ -41,8 +38,11 @@ impl Report<'_> {
         line("deficits", self.deficits());
         line("cuts", self.cuts());
         line("creases", self.creases());
-        if let Some(count) = self.rulings {
-            line("rulings", counted(count, "face has one", "faces have one"));
+        if let Some(count) = self.rulings.filter(|count| *count > 0) {
+            line(
+                "rulings",
+                counted(count, "line, not to be cut", "lines, not to be cut"),
+            );
         }
         for note in self.notes() {
             let _ = writeln!(text, "note: {note}");
@@ -81,7 +81,7 @@ impl Report<'_> {
 
     fn deficits(&self) -> String {
         let own = self.unrolled.deficits.iter().enumerate();
-        let count = own.clone().filter(|(_, d)| d.abs() > DEVELOPABLE).count();
+        let count = own.clone().filter(|(_, d)| d.abs() > ROUND_OFF).count();
         let (v, most) = own.fold((0, 0.0_f64), |most, (v, d)| {
             if d.abs() > most.1.abs() {
                 (v, *d)
@@ -114,7 +114,7 @@ impl Report<'_> {
             .filter(|v| rim.is_boundary_vertex(*v))
             .map(|v| self.unrolled.vertices[v.index()])
             .filter(|v| !t.is_boundary_vertex(*v))
-            .filter(|v| self.unrolled.deficits[v.index()].abs() > DEVELOPABLE)
+            .filter(|v| self.unrolled.deficits[v.index()].abs() > ROUND_OFF)
             .collect();
         let to = match reached.len() {
             0 => String::new(),
@@ -198,7 +198,7 @@ impl Report<'_> {
         let soft = self
             .folds
             .iter()
-            .filter(|f| !f.is_crease && f.size() > DEVELOPABLE);
+            .filter(|f| !f.is_crease && f.size() > ROUND_OFF);
         let (count, most) = soft.fold((0, 0.0_f64), |(n, m), f| (n + 1, m.max(f.size())));
         if count > 0 {
             notes.push(format!(
@@ -227,7 +227,7 @@ impl Report<'_> {
     fn verdict(&self) -> String {
         let strain = self.unrolled.strain();
         let fits = "no triangles are turned over or lie on each other";
-        if strain.abs() <= KEPT {
+        if strain.abs() <= ROUND_OFF {
             let digits = brief(strain.abs().max(f64::EPSILON));
             return format!("all edges keep their lengths, to {digits} of them; {fits}");
         }

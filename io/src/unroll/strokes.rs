@@ -7,7 +7,7 @@ use isosheet_dynamics::FaceCurvature;
 use isosheet_formats::EdgeAssignment;
 use isosheet_mesh::vec3::{Vec3, dot, sub};
 use isosheet_mesh::{EdgeId, Ruling, Sheet, VertexId};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 type Point = [f64; 2];
 
@@ -106,38 +106,58 @@ fn straight(flat: &Sheet, edges: &[EdgeId]) -> Vec<[VertexId; 2]> {
     lines
 }
 
-/// The ruling through the centre of each face that has one, up to the sides of the face; none of a sheet whose
-/// curvature cannot be fitted.
+/// The ruling through the centre of each face, up to the sides of the face. Of faces that are too long for a fit
+/// of their curvature it is the edge that folds most and is no crease, as between the quadrilaterals of a strip.
 pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec<Stroke> {
     let flat = &unrolled.flat;
+    let t = flat.topology();
     let creases: Vec<EdgeId> = folds
         .iter()
         .filter(|f| f.is_crease)
         .map(|f| f.edge)
         .collect();
-    let Ok(curvature) = FaceCurvature::new(flat, &[], &creases) else {
-        return Vec::new();
-    };
     let x: Vec<f64> = unrolled
         .vertices
         .iter()
         .flat_map(|v| given.position(*v))
         .collect();
-    let all = curvature
-        .rulings(&x)
-        .into_iter()
-        .zip(flat.topology().faces());
-    let stroke = |(ruling, face): (Option<Ruling>, &[VertexId; 3])| {
-        let own = face.map(|v| given.position(unrolled.vertices[v.index()]));
-        let corners = face.map(|v| place(flat, v));
-        let points = across(&corners, in_plane(&own, &corners, ruling?.direction)?)?;
-        Some(Stroke {
+    let fitted = FaceCurvature::new(flat, &[], &creases).map(|curvature| curvature.rulings(&x));
+    let fitted = fitted.unwrap_or_else(|_| vec![None; t.face_count()]);
+    let mut bends = vec![0.0; t.edge_count()];
+    for fold in folds
+        .iter()
+        .filter(|f| !f.is_crease && f.assignment != EdgeAssignment::Flat)
+    {
+        bends[fold.edge.index()] = fold.size();
+    }
+    let mut edges: BTreeSet<EdgeId> = BTreeSet::new();
+    let mut strokes = Vec::new();
+    let mut draw = |points: [Point; 2]| {
+        strokes.push(Stroke {
             points: points.to_vec(),
             class: LineClass::Ignored,
             angle: None,
-        })
+        });
     };
-    all.filter_map(stroke).collect()
+    for (f, ruling) in t.face_ids().zip(fitted) {
+        let face = t.faces()[f.index()];
+        let Some(Ruling { direction, .. }) = ruling else {
+            let own = t.face_edges(f).into_iter();
+            let most = own.max_by(|a, b| bends[a.index()].total_cmp(&bends[b.index()]));
+            edges.extend(most.filter(|e| bends[e.index()] > 0.0));
+            continue;
+        };
+        let own = face.map(|v| given.position(unrolled.vertices[v.index()]));
+        let corners = face.map(|v| place(flat, v));
+        let direction = in_plane(&own, &corners, direction);
+        if let Some(points) = direction.and_then(|d| across(&corners, d)) {
+            draw(points);
+        }
+    }
+    for e in edges {
+        draw(t.edges()[e.index()].map(|v| place(flat, v)));
+    }
+    strokes
 }
 
 /// A direction in the plane of a face in space, in the plane where the face is laid out.

@@ -40,6 +40,7 @@ mod time_error;
 mod tools;
 mod traces;
 mod trajectories;
+mod unroll;
 mod what_drawings_say;
 mod yielding;
 
