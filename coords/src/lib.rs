@@ -15,8 +15,8 @@
 //! square sparse matrix `A = [G; S]` ([`Linearised`]), and the mass-matrix solve of any chart is one
 //! solve with the saddle-point matrix ([`SaddlePoint`]).
 //!
-//! [`unroll`] assigns the vertices of a developable surface coordinates in the plane: its pattern, cut open where
-//! it has to be.
+//! [`unroll`] assigns the vertices of a developable surface coordinates in the plane: its pattern, cut open
+//! where it has to be.
 //!
 //! States are flat slices of positions, three values per vertex; pinned vertices have no unknowns
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`], a crate of its own.

@@ -76,14 +76,14 @@ impl Unrolled {
 ///
 /// Each part that is no disk (a cylinder, a closed surface, one with handles) is cut open along short edges,
 /// creases before others, and cut to its corners: vertices with an angle deficit of more than
-/// [`UnrollOptions::largest_deficit`] that are on a crease or alone, as the apex of a cone and the corners of a
-/// polyhedron. A part that lies flat around a hole is not cut there.
+/// [`UnrollOptions::largest_deficit`] that are on a crease or alone, as the apex of a cone and the corners of
+/// a polyhedron. A part that lies flat around a hole is not cut there.
 ///
 /// The positions minimise `sum w (|p - q|^2 / l^2 - 1)^2` over the edges, with the areas that belong to the
-/// edges as weights, by Gauss and Newton's method from triangles that are laid side by side. Where no deficits
-/// are left all lengths are met to round-off. Otherwise the strain that is left says how far the sheet is from
-/// developable. No triangle is turned over. A piece that would lie on itself is divided further. Pieces are
-/// turned such that their bounding boxes have the least area, and lie in rows.
+/// edges as weights, by Gauss and Newton's method from triangles that are laid side by side. Where no
+/// deficits are left all lengths are met to round-off. Otherwise the strain that is left says how far the
+/// sheet is from developable. No triangle is turned over. A piece that would lie on itself is divided
+/// further. Pieces are turned such that their bounding boxes have the least area, and lie in rows.
 ///
 /// ```
 /// use isosheet_coords::{UnrollOptions, unroll};

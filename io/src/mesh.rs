@@ -81,8 +81,8 @@ pub(crate) struct MeshArgs {
     /// [default: a ten-thousandth of the diagonal of the drawing]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     snap: Option<Length>,
-    /// The length that a unit of the drawing means: m, cm, mm, in, pt or px [default: what the file says, or m for
-    /// curves]
+    /// The length that a unit of the drawing means: m, cm, mm, in, pt or px [default: what the file says, or
+    /// m for curves]
     #[arg(long)]
     unit: Option<DrawingUnit>,
     /// Make the drawing larger by this factor

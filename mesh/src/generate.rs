@@ -1,7 +1,7 @@
 //! Sheets made by formula.
 //!
-//! All but [`strip_between`] are flat in the plane z = 0 with faces counter-clockwise as seen from +z. All check
-//! their arguments.
+//! All but [`strip_between`] are flat in the plane z = 0 with faces counter-clockwise as seen from +z. All
+//! check their arguments.
 
 mod delaunay;
 mod error;

@@ -2,11 +2,12 @@
 
 use std::collections::VecDeque;
 
-/// The faces of a mesh that is cut along some of its edges: what lies on the two sides of a cut has vertices of
-/// its own.
+/// The faces of a mesh that is cut along some of its edges: what lies on the two sides of a cut has vertices
+/// of its own.
 ///
-/// Faces stay together at a vertex where they are neighbours across edges that are not cut. So a cut that ends
-/// inside of the sheet leaves its last vertex whole, and a single edge between two such ends cannot be cut.
+/// Faces stay together at a vertex where they are neighbours across edges that are not cut. So a cut that
+/// ends inside of the sheet leaves its last vertex whole, and a single edge between two such ends cannot be
+/// cut.
 ///
 /// ```
 /// use isosheet_mesh::Opened;
@@ -42,8 +43,8 @@ impl Opened {
     }
 
     /// An oriented surface of faces that need not be one: faces are turned over where that makes windings
-    /// agree. The surface is cut where it does not (around a Moebius band they cannot agree everywhere), where
-    /// more than two faces meet at an edge, and where faces meet at a vertex alone.
+    /// agree. The surface is cut where it does not (around a Moebius band they cannot agree everywhere),
+    /// where more than two faces meet at an edge, and where faces meet at a vertex alone.
     pub fn surface(faces: &[[u32; 3]]) -> Self {
         let sides = sides(faces);
         let joined: Vec<[Side; 2]> = pairs(&sides).collect();

@@ -11,16 +11,16 @@ const STEPS: usize = 200;
 /// Below this relative change of positions, a step of Newton's method leaves round-off alone.
 const SMALL: f64 = 1e-9;
 
-/// Three steps that gain less than this part of the sum of squares are the last ones: strains that are left are
-/// known to more digits than a limit for them has.
+/// Three steps that gain less than this part of the sum of squares are the last ones: strains that are left
+/// are known to more digits than a limit for them has.
 const IDLE: f64 = 1e-6;
 
 /// The lengths of a sheet in the plane, as a problem of least squares.
 ///
-/// The sum of `w r^2` over the edges is minimised, with the strain `r = (|p - q|^2 / l^2 - 1) / 2` and weights
-/// `w`, the areas that belong to the edges. Gauss and Newton's normal equations are regular besides the motions
-/// of the plane, as triangles in the plane are rigid: of a developable sheet all lengths are met, and
-/// convergence is quadratic.
+/// The sum of `w r^2` over the edges is minimised, with the strain `r = (|p - q|^2 / l^2 - 1) / 2` and
+/// weights `w`, the areas that belong to the edges. Gauss and Newton's normal equations are regular besides
+/// the motions of the plane, as triangles in the plane are rigid: of a developable sheet all lengths are met,
+/// and convergence is quadratic.
 pub(super) struct LeastSquares<'a> {
     sheet: &'a Sheet,
     weights: Vec<f64>,

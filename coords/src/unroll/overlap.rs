@@ -2,8 +2,9 @@
 
 use super::vec2::{Point, dot};
 
-/// The first two triangles found that lie on each other more than `depth` deep: no line along a side of either
-/// of them has the one on one side and the other on the other side, up to that depth. Neighbours touch.
+/// The first two triangles found that lie on each other more than `depth` deep: no line along a side of
+/// either of them has the one on one side and the other on the other side, up to that depth. Neighbours
+/// touch.
 ///
 /// Triangles are counter-clockwise.
 pub(super) fn overlapping(triangles: &[[Point; 3]], depth: f64) -> Option<[usize; 2]> {

@@ -78,8 +78,8 @@ fn middle(sheet: &Sheet) -> FaceId {
     last
 }
 
-/// The layout of a disk whose boundary is a circle with the area of the sheet, and where each vertex inside is
-/// the mean of its neighbours: no face is turned over (Tutte, *How to draw a graph*, 1963).
+/// The layout of a disk whose boundary is a circle with the area of the sheet, and where each vertex inside
+/// is the mean of its neighbours: no face is turned over (Tutte, *How to draw a graph*, 1963).
 ///
 /// # Errors
 /// [`LinalgError`] for a sheet without a boundary.

@@ -11,8 +11,8 @@ use isosheet_mesh::{EdgeId, Opened, Sheet, VertexId};
 use shapes::{cone, cylinder, strip};
 use std::f64::consts::{PI, TAU};
 
-/// What holds of every result: faces keep their areas as edges keep their lengths, none is turned over, and no
-/// two lie on each other.
+/// What holds of every result: faces keep their areas as edges keep their lengths, none is turned over, and
+/// no two lie on each other.
 fn check(sheet: &Sheet, unrolled: &Unrolled, strain: f64) {
     let (own, flat) = (sheet.topology(), &unrolled.flat);
     let t = flat.topology();
@@ -47,8 +47,8 @@ fn unrolled(sheet: &Sheet) -> Unrolled {
     unrolled
 }
 
-/// A closed band of the circumference `2 n R sin(pi / n)`, the perimeter of the inscribed polygon, is cut once
-/// and becomes a rectangle.
+/// A closed band of the circumference `2 n R sin(pi / n)`, the perimeter of the inscribed polygon, is cut
+/// once and becomes a rectangle.
 #[test]
 fn a_cylinder_is_a_rectangle() {
     for (sides, rings, unit) in [(3, 1, 1.0), (16, 5, 1e-3), (200, 30, 1e3)] {
@@ -216,6 +216,23 @@ fn what_winds_round_is_divided() {
         "{}",
         unrolled.pieces.len()
     );
+}
+
+/// A mesh that is moved, turned and of another size has the same pattern, up to its place.
+#[test]
+fn patterns_move_with_their_meshes() {
+    let sheet = cone(9, 3, 0.6, 1.5);
+    let own = unrolled(&sheet);
+    for (size, angle) in [(1.0, 0.7), (1e-3, 2.0), (1e4, -1.1)] {
+        let (s, c) = f64::sin_cos(angle);
+        let moved =
+            |[x, y, z]: [f64; 3]| [c * x - s * z, y, s * x + c * z].map(|c| size * (c + 3.0));
+        let other = unrolled(&sheet.map_positions(moved).unwrap());
+        assert_eq!(own.vertices, other.vertices);
+        for (a, b) in own.flat.positions().iter().zip(other.flat.positions()) {
+            assert!((size * a - b).abs() < 1e-12 * size, "{a} {b}");
+        }
+    }
 }
 
 #[test]

@@ -34,8 +34,8 @@ impl Stroke {
 }
 
 /// Layers in the order in which they are written, below each other: what is cut last comes last. Each has the
-/// class, a name that readers understand, the colour of Origami Simulator, and the number of that colour in DXF
-/// files.
+/// class, a name that readers understand, the colour of Origami Simulator, and the number of that colour in
+/// DXF files.
 pub(crate) const LAYERS: [(LineClass, &str, Colour, i32); 6] = [
     (LineClass::Ignored, "guide", Colour([160, 160, 160]), 9),
     (LineClass::Flat, "flat", Colour([255, 255, 0]), 2),

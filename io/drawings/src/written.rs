@@ -7,8 +7,8 @@ use isosheet_files::{DataError, FileError, write_atomically};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes lines as a drawing in millimetres, atomically, in the format of the extension: a layer for each class
-/// of lines, which [`read_drawing`](crate::read_drawing) takes for what they are.
+/// Writes lines as a drawing in millimetres, atomically, in the format of the extension: a layer for each
+/// class of lines, which [`read_drawing`](crate::read_drawing) takes for what they are.
 ///
 /// ```
 /// use isosheet_drawings::{DrawingOptions, LineClass, Stroke, read_drawing, write_drawing};
@@ -27,8 +27,8 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// [`FileError`] for a name that is none of a drawing, a coordinate or an angle that is not finite, and a file
-/// that cannot be written; nothing is written then.
+/// [`FileError`] for a name that is none of a drawing, a coordinate or an angle that is not finite, and a
+/// file that cannot be written; nothing is written then.
 pub fn write_drawing(path: &Path, lines: &[Stroke]) -> Result<(), FileError> {
     let format = DrawingFormat::of(path).ok_or_else(|| {
         let remedy = "name a file .svg or .dxf";

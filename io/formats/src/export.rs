@@ -169,8 +169,8 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     }
 }
 
-/// Writes a flat mesh as [`write_mesh`]. A FOLD file has the positions of its vertices when it is folded (three
-/// numbers each, metres) as a second frame.
+/// Writes a flat mesh as [`write_mesh`]. A FOLD file has the positions of its vertices when it is folded
+/// (three numbers each, metres) as a second frame.
 ///
 /// # Errors
 /// [`ExportError`]; nothing is written then.

@@ -28,9 +28,9 @@ impl Fold {
     }
 }
 
-/// The folds of all edges inside of the pieces. Angles are those of the mesh in space; where it is flat there, and
-/// of edges that lie on each other, those that its file has. Creases are folds of at least `crease` radians, and
-/// all edges that the file names mountains, valleys or unassigned.
+/// The folds of all edges inside of the pieces. Angles are those of the mesh in space; where it is flat
+/// there, and of edges that lie on each other, those that its file has. Creases are folds of at least
+/// `crease` radians, and all edges that the file names mountains, valleys or unassigned.
 pub(super) fn folds(
     mesh: &MeshFile,
     origins: &[u32],

@@ -106,8 +106,9 @@ fn straight(flat: &Sheet, edges: &[EdgeId]) -> Vec<[VertexId; 2]> {
     lines
 }
 
-/// The ruling through the centre of each face, up to the sides of the face. Of faces that are too long for a fit
-/// of their curvature it is the edge that folds most and is no crease, as between the quadrilaterals of a strip.
+/// The ruling through the centre of each face, up to the sides of the face. Of faces that are too long for a
+/// fit of their curvature it is the edge that folds most and is no crease, as between the quadrilaterals of a
+/// strip.
 pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec<Stroke> {
     let flat = &unrolled.flat;
     let t = flat.topology();

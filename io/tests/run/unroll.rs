@@ -3,7 +3,9 @@
 use crate::drawings::{area, meshed};
 use crate::skip::data_folder;
 use crate::{code, run, stderr, stdout, summary};
-use isosheet_formats::{EdgeAssignment, FoldFrame, MeshFile, MeshOptions, read_mesh, read_mesh_with};
+use isosheet_formats::{
+    EdgeAssignment, FoldFrame, MeshFile, MeshOptions, read_mesh, read_mesh_with,
+};
 use isosheet_mesh::{Sheet, fold_angle};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
@@ -33,13 +35,24 @@ fn unrolled(folder: &Path, mesh: &str, out: &str, options: &[&str]) -> String {
     let output = run(folder, &[&["unroll", mesh, "-o", out], options].concat());
     assert_eq!(code(&output), Some(0), "{mesh}: {}", stderr(&output));
     let said = stdout(&output);
-    assert!(said.lines().last().unwrap().starts_with("unrolled: "), "{said}");
+    assert!(
+        said.lines().last().unwrap().starts_with("unrolled: "),
+        "{said}"
+    );
     said
 }
 
 fn refused(folder: &Path, mesh: &str, options: &[&str], exit: i32) -> String {
-    let output = run(folder, &[&["unroll", mesh, "-o", "no.svg"], options].concat());
-    assert_eq!(code(&output), Some(exit), "{mesh} {options:?}: {}", stderr(&output));
+    let output = run(
+        folder,
+        &[&["unroll", mesh, "-o", "no.svg"], options].concat(),
+    );
+    assert_eq!(
+        code(&output),
+        Some(exit),
+        "{mesh} {options:?}: {}",
+        stderr(&output)
+    );
     assert!(output.stdout.is_empty() && !folder.join("no.svg").exists());
     stderr(&output)
 }
@@ -59,8 +72,8 @@ fn boundary(mesh: &MeshFile) -> f64 {
     rim.map(|e| sheet.lengths()[e.index()]).sum()
 }
 
-/// The net of a cube as a drawing becomes a mesh of its area, with outline and creases to nine digits, and its
-/// creases fold by the right angles of the cube.
+/// The net of a cube as a drawing becomes a mesh of its area, with outline and creases to nine digits, and
+/// its creases fold by the right angles of the cube.
 #[test]
 fn a_net_is_read_and_folded_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -68,26 +81,38 @@ fn a_net_is_read_and_folded_again() {
     fs::write(folder.join("cube.obj"), CUBE).unwrap();
     for name in ["cube.svg", "cube.dxf"] {
         let said = unrolled(folder, "cube.obj", name, &[]);
-        assert!(said.contains("8 vertices inside have one, the largest one 90 degrees"), "{said}");
+        assert!(
+            said.contains("8 vertices inside have one, the largest one 90 degrees"),
+            "{said}"
+        );
         assert!(said.contains("7 edges, 700 mm"), "{said}");
-        assert!(said.contains("5 edges: 5 mountains, folded by 90 degrees"), "{said}");
+        assert!(
+            said.contains("5 edges: 5 mountains, folded by 90 degrees"),
+            "{said}"
+        );
         let (mesh, said) = meshed(folder, name, &["--spacing", "50mm"]);
         assert!(said.contains("mountain  5 lines, 500 mm"), "{said}");
         assert!((area(&mesh) - 0.06).abs() < 1e-9 * 0.06);
         assert!((boundary(&mesh) - 1.4).abs() < 1e-9 * 1.4);
-        let creases = mesh.creases.iter().filter(|c| c.assignment == EdgeAssignment::Mountain);
+        let creases = mesh
+            .creases
+            .iter()
+            .filter(|c| c.assignment == EdgeAssignment::Mountain);
         for crease in creases {
-            // DXF files have no place for angles.
-            let expected = (name == "cube.svg").then_some(-FRAC_PI_2);
-            assert_eq!(crease.angle.is_some(), expected.is_some());
-            assert!((crease.angle.unwrap_or_default() - expected.unwrap_or_default()).abs() < 1e-12);
+            // DXF files have no place for angles, and a mountain without one folds by 180 degrees.
+            let expected = if name == "cube.svg" { -FRAC_PI_2 } else { -PI };
+            assert!((crease.angle.unwrap() - expected).abs() < 1e-12);
         }
     }
     unrolled(folder, "cube.obj", "cube.fold", &[]);
     for pattern in ["cube.svg", "cube.fold"] {
         let done = run(folder, &["fold", pattern]);
         assert_eq!(code(&done), Some(0), "{}", stderr(&done));
-        assert!(stdout(&done).contains("every crease closes"), "{}", stdout(&done));
+        assert!(
+            stdout(&done).contains("every crease closes"),
+            "{}",
+            stdout(&done)
+        );
         let found = summary(&folder.join("cube-run"));
         assert!(found.largest_strain < 1e-9, "{}", found.largest_strain);
         fs::remove_dir_all(folder.join("cube-run")).unwrap();
@@ -95,8 +120,8 @@ fn a_net_is_read_and_folded_again() {
     }
 }
 
-/// A closed band becomes a rectangle of the perimeter of its polygon; its FOLD file has the lengths of its edges,
-/// the fold angles between its sides, and its shape in space as the second frame.
+/// A closed band becomes a rectangle of the perimeter of its polygon; its FOLD file has the lengths of its
+/// edges, the fold angles between its sides, and its shape in space as the second frame.
 #[test]
 fn a_band_is_a_rectangle_with_its_folded_form() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,11 +129,17 @@ fn a_band_is_a_rectangle_with_its_folded_form() {
     let n = 24;
     fs::write(folder.join("band.obj"), prism(n, 30.0, 80.0)).unwrap();
     let said = unrolled(folder, "band.obj", "band.fold", &["--unit", "mm"]);
-    assert!(said.contains("none: the angles around each vertex"), "{said}");
+    assert!(
+        said.contains("none: the angles around each vertex"),
+        "{said}"
+    );
     let flat = read_mesh(&folder.join("band.fold")).unwrap();
     let perimeter = 0.06 * n as f64 * (PI / n as f64).sin();
     assert!((area(&flat) / (0.08 * perimeter) - 1.0).abs() < 1e-12);
-    let inside = flat.creases.iter().filter(|c| c.assignment == EdgeAssignment::Mountain);
+    let inside = flat
+        .creases
+        .iter()
+        .filter(|c| c.assignment == EdgeAssignment::Mountain);
     assert_eq!(inside.clone().count(), n - 1);
     for crease in inside {
         assert!((crease.angle.unwrap() + TAU / n as f64).abs() < 1e-12);
@@ -124,14 +155,31 @@ fn a_band_is_a_rectangle_with_its_folded_form() {
         assert!((a / b - 1.0).abs() < 1e-12);
     }
     let t = folded.topology();
-    let angles = t.edge_ids().filter_map(|e| fold_angle(t, folded.positions(), e));
-    assert!(angles.into_iter().all(|a| a.abs() < 1e-9 || (a + TAU / n as f64).abs() < 1e-9));
+    let angles = t
+        .edge_ids()
+        .filter_map(|e| fold_angle(t, folded.positions(), e));
+    assert!(
+        angles
+            .into_iter()
+            .all(|a| a.abs() < 1e-9 || (a + TAU / n as f64).abs() < 1e-9)
+    );
     // Drawn as creases with a smaller angle, and as rulings without.
     let said = unrolled(folder, "band.obj", "band.svg", &["--unit", "mm"]);
     assert!(said.contains("rulings   23 lines"), "{said}");
-    assert!(said.contains("23 edges fold less than 30 degrees, by 15 at most"), "{said}");
-    let said = unrolled(folder, "band.obj", "band.svg", &["--unit", "mm", "--crease-angle", "10"]);
-    assert!(said.contains("23 edges: 23 mountains, folded by 15 degrees"), "{said}");
+    assert!(
+        said.contains("23 edges fold less than 30 degrees, by 15 at most"),
+        "{said}"
+    );
+    let said = unrolled(
+        folder,
+        "band.obj",
+        "band.svg",
+        &["--unit", "mm", "--crease-angle", "10"],
+    );
+    assert!(
+        said.contains("23 edges: 23 mountains, folded by 15 degrees"),
+        "{said}"
+    );
     // Rulings are not cut, nor part of the mesh.
     unrolled(folder, "band.obj", "band.svg", &["--unit", "mm"]);
     let (mesh, said) = meshed(folder, "band.svg", &["--spacing", "20mm"]);
@@ -154,12 +202,26 @@ fn what_cannot_be_unrolled_is_refused() {
     }
     for k in 0..64 {
         let a = k / 8 * 9 + k % 8 + 1;
-        writeln!(ball, "f {a} {} {}\nf {a} {} {}", a + 1, a + 10, a + 10, a + 9).unwrap();
+        writeln!(
+            ball,
+            "f {a} {} {}\nf {a} {} {}",
+            a + 1,
+            a + 10,
+            a + 10,
+            a + 9
+        )
+        .unwrap();
     }
     fs::write(folder.join("ball.obj"), ball).unwrap();
     let message = refused(folder, "ball.obj", &[], 3);
-    assert!(message.contains("49 vertices inside have an angle deficit"), "{message}");
-    assert!(message.contains("--cut") && message.contains("--strain"), "{message}");
+    assert!(
+        message.contains("49 vertices inside have an angle deficit"),
+        "{message}"
+    );
+    assert!(
+        message.contains("--cut") && message.contains("--strain"),
+        "{message}"
+    );
     let strain = message.rsplit("--strain ").next().unwrap();
     let strain: String = strain.chars().take_while(|c| *c != '`').collect();
     let said = unrolled(folder, "ball.obj", "ball.ply", &["--strain", &strain]);
@@ -181,7 +243,11 @@ fn what_cannot_be_unrolled_is_refused() {
     assert_eq!(code(&same), Some(2));
     let other = run(folder, &["unroll", "cube.obj", "-o", "cube.pdf"]);
     assert_eq!(code(&other), Some(2));
-    assert!(stderr(&other).contains(".svg, .dxf, .obj"), "{}", stderr(&other));
+    assert!(
+        stderr(&other).contains(".svg, .dxf, .obj"),
+        "{}",
+        stderr(&other)
+    );
 }
 
 /// Named edges are cut, parts that touch are told apart, and vertices in the same place are mentioned.
@@ -194,23 +260,41 @@ fn cuts_and_duplicates() {
     let said = unrolled(folder, "cube.obj", "a.svg", &["--cut", "4-5,5-6,6-7,7-4"]);
     assert!(said.starts_with("a.svg: 2 pieces of 12 faces"), "{said}");
     let mut split = String::new();
-    let corners = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let corners = [
+        [0, 3, 2, 1],
+        [4, 5, 6, 7],
+        [0, 1, 5, 4],
+        [1, 2, 6, 5],
+        [2, 3, 7, 6],
+        [3, 0, 4, 7],
+    ];
     for v in corners.iter().flatten() {
         let place = [[0, 0], [1, 0], [1, 1], [0, 1]][v % 4];
         writeln!(split, "v {} {} {}", place[0], place[1], v / 4).unwrap();
     }
     for k in 0..6 {
-        writeln!(split, "f {} {} {} {}", 4 * k + 1, 4 * k + 2, 4 * k + 3, 4 * k + 4).unwrap();
+        writeln!(
+            split,
+            "f {} {} {} {}",
+            4 * k + 1,
+            4 * k + 2,
+            4 * k + 3,
+            4 * k + 4
+        )
+        .unwrap();
     }
     fs::write(folder.join("split.obj"), split).unwrap();
     let said = unrolled(folder, "split.obj", "b.svg", &[]);
-    assert!(said.contains("6 pieces") && said.contains("--weld 0"), "{said}");
+    assert!(
+        said.contains("6 pieces") && said.contains("--weld 0"),
+        "{said}"
+    );
     let said = unrolled(folder, "split.obj", "b.svg", &["--weld", "0"]);
-    assert!(said.starts_with("b.svg: 1 piece of 12 faces"), "{said}");
+    assert!(said.contains("b.svg: 1 piece of 12 faces"), "{said}");
 }
 
-/// The strip between two circles of different size in tilted planes, from files of points, is developable, and
-/// unrolls.
+/// The strip between two circles of different size in tilted planes, from files of points, is developable,
+/// and unrolls.
 #[test]
 fn a_strip_between_curves_is_unrolled() {
     let folder = tempfile::tempdir().unwrap();
@@ -219,21 +303,39 @@ fn a_strip_between_curves_is_unrolled() {
         let point = |k: usize| {
             let (s, c) = (TAU * (k % 300) as f64 / 300.0).sin_cos();
             let x = radius * c;
-            format!("{}, {}, {}\n", x * tilt.cos(), radius * s, z + x * tilt.sin())
+            format!(
+                "{}, {}, {}\n",
+                x * tilt.cos(),
+                radius * s,
+                z + x * tilt.sin()
+            )
         };
         (0..=300).map(point).collect()
     };
     fs::write(folder.join("lower.csv"), circle(60.0, 0.0, 0.0)).unwrap();
     fs::write(folder.join("upper.csv"), circle(35.0, 0.4, 110.0)).unwrap();
     let words = ["--columns", "60", "--unit", "mm", "-o", "strip.obj"];
-    let made = run(folder, &[&["mesh", "lower.csv", "--strip-to", "upper.csv"][..], &words].concat());
+    let made = run(
+        folder,
+        &[
+            &["mesh", "lower.csv", "--strip-to", "upper.csv"][..],
+            &words,
+        ]
+        .concat(),
+    );
     assert_eq!(code(&made), Some(0), "{}", stderr(&made));
-    assert!(stdout(&made).contains("60 rulings\ndevelopable: "), "{}", stdout(&made));
+    assert!(
+        stdout(&made).contains("60 rulings\ndevelopable: "),
+        "{}",
+        stdout(&made)
+    );
     let said = unrolled(folder, "strip.obj", "strip.fold", &[]);
-    assert!(said.contains("1 piece of 120 faces") && said.contains("all edges keep"), "{said}");
-    let [flat, strip] = ["strip.fold", "strip.obj"].map(|name| {
-        read_mesh(&folder.join(name)).unwrap().into_sheet().unwrap()
-    });
+    assert!(
+        said.contains("1 piece of 120 faces") && said.contains("all edges keep"),
+        "{said}"
+    );
+    let [flat, strip] = ["strip.fold", "strip.obj"]
+        .map(|name| read_mesh(&folder.join(name)).unwrap().into_sheet().unwrap());
     assert!((flat.area() / strip.area() - 1.0).abs() < 1e-12);
     assert_eq!(lengths(&flat).len(), lengths(&strip).len() + 1);
     let scene = "version = 1\n[sheet]\nmesh = { strip_between = { first = { path = \"lower.csv\", scale = 0.001 }, \
@@ -241,12 +343,28 @@ fn a_strip_between_curves_is_unrolled() {
     fs::write(folder.join("strip.toml"), scene).unwrap();
     let info = run(folder, &["info", "strip.toml"]);
     assert_eq!(code(&info), Some(0), "{}", stderr(&info));
-    assert!(stdout(&info).contains("faces            120"), "{}", stdout(&info));
+    assert!(
+        stdout(&info).contains("faces            120"),
+        "{}",
+        stdout(&info)
+    );
     for (words, exit, expected) in [
-        (&["lower.csv", "--strip-to", "none.csv", "--columns", "60"][..], 3, "none.csv"),
-        (&["lower.csv", "--strip-to", "upper.csv", "--columns", "2"], 2, "columns is 2"),
+        (
+            &["lower.csv", "--strip-to", "none.csv", "--columns", "60"][..],
+            3,
+            "none.csv",
+        ),
+        (
+            &["lower.csv", "--strip-to", "upper.csv", "--columns", "2"],
+            2,
+            "columns is 2",
+        ),
         (&["lower.csv", "--strip-to", "upper.csv"], 2, "--columns"),
-        (&["lower.csv", "--strip-to", "strip.toml", "--columns", "60"], 3, "three finite numbers"),
+        (
+            &["lower.csv", "--strip-to", "strip.toml", "--columns", "60"],
+            3,
+            "three finite numbers",
+        ),
     ] {
         let output = run(folder, &[&["mesh", "-o", "no.obj"][..], words].concat());
         assert_eq!(code(&output), Some(exit), "{words:?}: {}", stderr(&output));
@@ -255,8 +373,8 @@ fn a_strip_between_curves_is_unrolled() {
     }
 }
 
-/// Meshes of other people: folded states become flat patterns with the lengths of their edges, solids become nets
-/// without strain, what is curved or broken is refused, and nothing panics.
+/// Meshes of other people: folded states become flat patterns with the lengths of their edges, solids become
+/// nets without strain, what is curved or broken is refused, and nothing panics.
 #[test]
 fn meshes_of_other_people() {
     let Some(data) = data_folder() else { return };
@@ -271,10 +389,17 @@ fn meshes_of_other_people() {
                 continue;
             }
             let output = run(folder, &["unroll", &name, "-o", "out.fold"]);
-            assert!(matches!(code(&output), Some(0 | 3)), "{name}: {}", stderr(&output));
+            assert!(
+                matches!(code(&output), Some(0 | 3)),
+                "{name}: {}",
+                stderr(&output)
+            );
             if code(&output) != Some(0) {
                 let said = stderr(&output);
-                assert!(said.starts_with("error: ") && said.contains("= help: "), "{name}: {said}");
+                assert!(
+                    said.starts_with("error: ") && said.contains("= help: "),
+                    "{name}: {said}"
+                );
                 continue;
             }
             let options = |frame| MeshOptions {
@@ -288,12 +413,24 @@ fn meshes_of_other_people() {
             for (a, b) in flat.lengths().iter().zip(folded.lengths()) {
                 assert!((a / b - 1.0).abs() <= 1e-3, "{name}: {a} {b}");
             }
-            assert!(flat.positions().iter().skip(2).step_by(3).all(|z| *z == 0.0));
+            assert!(
+                flat.positions()
+                    .iter()
+                    .skip(2)
+                    .step_by(3)
+                    .all(|z| *z == 0.0)
+            );
         }
     }
     // A folded state of a pattern, and the pattern itself, which is a square of the side 1 in nine panels.
-    let folded = data.join("fold/edemaine_squaretwist_3d.fold").display().to_string();
+    let folded = data
+        .join("fold/edemaine_squaretwist_3d.fold")
+        .display()
+        .to_string();
     let said = unrolled(folder, &folded, "twist.fold", &[]);
-    assert!(said.contains("1 piece of 18 faces, 1000 mm by 1000 mm"), "{said}");
+    assert!(
+        said.contains("1 piece of 18 faces, 1000 mm by 1000 mm"),
+        "{said}"
+    );
     assert!(said.contains("12 edges: 6 mountains, 6 valleys"), "{said}");
 }

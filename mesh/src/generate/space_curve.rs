@@ -4,8 +4,8 @@ use super::error::GenerateError;
 use crate::vec3::{Vec3, axpy, norm, sub};
 
 /// A curve through points, cubic between them: its tangent at each point is that of the parabola through the
-/// point and its neighbours (Bessel's tangents; de Boor, *A Practical Guide to Splines*, ch. IV). Tangents are
-/// exact to second order in the distance of the points.
+/// point and its neighbours (Bessel's tangents; de Boor, *A Practical Guide to Splines*, ch. IV). Tangents
+/// are exact to second order in the distance of the points.
 #[derive(Clone, Debug)]
 pub(super) struct SpaceCurve {
     points: Vec<Vec3>,
@@ -130,8 +130,8 @@ mod tests {
     use crate::vec3::dot;
     use std::f64::consts::TAU;
 
-    /// Points of a circle: the curve goes through them, and its tangents are across the radius to second order,
-    /// also where it closes.
+    /// Points of a circle: the curve goes through them, and its tangents are across the radius to second
+    /// order, also where it closes.
     #[test]
     fn tangents_of_a_circle() {
         for n in [12_u32, 24, 48] {

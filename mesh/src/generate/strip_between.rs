@@ -9,8 +9,8 @@ use crate::vec3::{Vec3, cross, dot, norm, sub, unit};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RuledStrip {
-    /// The strip in space, in columns of triangles. Vertex (i, j) has the number `i + j columns`, where a strip
-    /// that is not closed has one column more than it has cells; row 0 is the first curve.
+    /// The strip in space, in columns of triangles. Vertex (i, j) has the number `i + j columns`, where a
+    /// strip that is not closed has one column more than it has cells; row 0 is the first curve.
     pub sheet: Sheet,
     /// The ends of each ruling, on the first and on the second curve, metres.
     pub rulings: Vec<[[f64; 3]; 2]>,
@@ -21,17 +21,18 @@ pub struct RuledStrip {
 
 /// The strip between two curves whose rulings are as nearly as possible those of a developable surface.
 ///
-/// The curves go smoothly through their points (metres); both are closed if the last point of each is its first
-/// one. A ruling from `p1` to `p2` belongs to a developable surface if it lies in one plane with the tangents
-/// `t1` and `t2` there: `D = det(t1, t2, p2 - p1) = 0`, of unit vectors (Liu, Pottmann, Wallner, Yang and Wang,
-/// *Geometric modeling with conical meshes and developable surfaces*, ACM Trans. Graph. 25, 2006; Tang, Bo,
-/// Wallner and Pottmann, *Interactive design of developable surfaces*, ACM Trans. Graph. 35, 2016). Of all ways
-/// along both curves, from start to start to end to end and never back, that with the least sum of squares of
-/// the twist is found by dynamic programming, the angle between the planes of the ruling with both tangents; then
-/// each ruling is moved to the zero of `D` that is near, or where there is none to the least twist. An open curve that runs against the other one is reversed.
+/// The curves go smoothly through their points (metres); both are closed if the last point of each is its
+/// first one. A ruling from `p1` to `p2` belongs to a developable surface if it lies in one plane with the
+/// tangents `t1` and `t2` there: `D = det(t1, t2, p2 - p1) = 0`, of unit vectors (Liu, Pottmann, Wallner,
+/// Yang and Wang, *Geometric modeling with conical meshes and developable surfaces*, ACM Trans. Graph. 25,
+/// 2006; Tang, Bo, Wallner and Pottmann, *Interactive design of developable surfaces*, ACM Trans. Graph. 35, 2016).
+/// Of all ways along both curves, from start to start to end to end and never back, that with the least sum
+/// of squares of the twist is found by dynamic programming, the angle between the planes of the ruling with
+/// both tangents; then each ruling is moved to the zero of `D` that is near, or where there is none to the
+/// least twist. An open curve that runs against the other one is reversed.
 ///
-/// `columns` cells lie between the rulings, at equal parts of both lengths together, and `rows` of them across.
-/// The rest lengths are those in space.
+/// `columns` cells lie between the rulings, at equal parts of both lengths together, and `rows` of them
+/// across. The rest lengths are those in space.
 ///
 /// ```
 /// use isosheet_mesh::generate::strip_between;
@@ -45,8 +46,9 @@ pub struct RuledStrip {
 /// ```
 ///
 /// # Errors
-/// [`GenerateError`] for a curve with fewer than two points, with points in the same place, or next to one that
-/// is closed where it is not, for counts below one (three columns of a closed strip), and for too many faces.
+/// [`GenerateError`] for a curve with fewer than two points, with points in the same place, or next to one
+/// that is closed where it is not, for counts below one (three columns of a closed strip), and for too many
+/// faces.
 pub fn strip_between(
     first: &[[f64; 3]],
     second: &[[f64; 3]],
@@ -113,9 +115,13 @@ struct Pairs {
     weight: f64,
 }
 
-/// Cells along each curve for the dynamic programming: enough to tell apart the zeros of curves with a hundred
-/// bends, and their square takes a second at most.
+/// Cells along each curve for the dynamic programming: enough to tell apart the zeros of curves with a
+/// hundred bends, and their square takes a second at most.
 const MOST_CELLS: usize = 512;
+
+/// Rulings at which a closed strip may start that are tried: curves that bend like circles and ellipses have
+/// two for each of both ways round.
+const MOST_STARTS: usize = 16;
 
 impl Pairs {
     /// The best way along both curves.
@@ -139,25 +145,33 @@ impl Pairs {
             let second = if crosswise { second.reversed() } else { second };
             return of(&second, 0.0).1;
         }
-        // A closed strip starts with a ruling that is one of a developable surface.
-        let mut best = of(&second, 0.0);
-        for second in [second.reversed(), second] {
+        // A closed strip starts with a ruling that is one of a developable surface: the shortest ones are
+        // tried.
+        let mut starts = Vec::new();
+        for second in [second.reversed(), second.clone()] {
             let probe = Self {
                 first: first.clone(),
-                second: second.clone(),
+                second,
                 shift: 0.0,
                 way: Vec::new(),
                 cells,
                 weight: 0.0,
             };
+            let determinant = |t: f64| probe.determinant(0.0, t);
             for k in 0..cells {
                 let [low, high] = [k, k + 1].map(|k| k as f64 / cells as f64);
-                let [a, b] = [low, high].map(|t| probe.determinant(0.0, t));
-                if a == 0.0 || a * b < 0.0 {
-                    let found = of(&second, zero(|t| probe.determinant(0.0, t), low, high));
-                    best = if found.0 < best.0 { found } else { best };
+                if determinant(low) == 0.0 || determinant(low) * determinant(high) < 0.0 {
+                    let shift = zero(determinant, low, high);
+                    let [p, q] = probe.ends(0.0, shift);
+                    starts.push((norm(sub(q, p)), shift, probe.second.clone()));
                 }
             }
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best = of(&second, 0.0);
+        for (_, shift, second) in starts.iter().take(MOST_STARTS) {
+            let found = of(second, *shift);
+            best = if found.0 < best.0 { found } else { best };
         }
         best.1
     }
@@ -181,9 +195,10 @@ impl Pairs {
             .asin()
     }
 
-    /// What a ruling costs: the squared sine of its twist, and a part of its squared length that decides between
-    /// ways that are alike. On a grid of `G` cells zeros are met to `1 / G`, so that squares have errors of
-    /// `1 / G^2`: this is the weight of the square of the length, as a part of the mean one of all pairs.
+    /// What a ruling costs: the squared sine of its twist, and a part of its squared length that decides
+    /// between ways that are alike. On a grid of `G` cells zeros are met to `1 / G`, so that squares have
+    /// errors of `1 / G^2`: this is the weight of the square of the length, as a part of the mean one of all
+    /// pairs.
     fn cost(&self, one: &[Vec3; 2], other: &[Vec3; 2]) -> f64 {
         let ruling = sub(other[0], one[0]);
         squared_sine(one, other) + self.weight * dot(ruling, ruling)
@@ -298,8 +313,8 @@ impl Pairs {
     }
 }
 
-/// The squared sine of the angle between the planes that a ruling spans with the tangents at its ends. Where a
-/// tangent runs along the ruling it is that of the determinant of the three unit vectors.
+/// The squared sine of the angle between the planes that a ruling spans with the tangents at its ends. Where
+/// a tangent runs along the ruling it is that of the determinant of the three unit vectors.
 fn squared_sine([p, u]: &[Vec3; 2], [q, v]: &[Vec3; 2]) -> f64 {
     let (u, v, ruling) = (unit(u), unit(v), unit(sub(q, p)));
     let [m, n] = [u, v].map(|t| cross(t, ruling));

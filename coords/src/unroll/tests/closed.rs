@@ -69,9 +69,9 @@ fn a_pillow_is_two_polygons() {
     }
 }
 
-/// The oloid, the hull of two circles in planes across each other of which each goes through the centre of the
-/// other: a developable surface with two edges, whose area is that of the unit sphere (Dirnboeck and Stachel
-/// 1997). The chords of its circles lack the square of their length.
+/// The oloid, the hull of two circles in planes across each other of which each goes through the centre of
+/// the other: a developable surface with two edges, whose area is that of the unit sphere (Dirnboeck and
+/// Stachel 1997). The chords of its circles lack the square of their length.
 #[test]
 fn an_oloid_is_developable() {
     let errors = [20, 40].map(|n| {
@@ -108,8 +108,8 @@ fn an_oloid_is_developable() {
     assert!(errors[1] > 0.0 && errors[0] / errors[1] > 3.0, "{errors:?}");
 }
 
-/// A square frame of a square section has a handle: it is cut to its sixteen corners and along both ways round,
-/// seventeen edges, but for one where its flat top or bottom stays a ring.
+/// A square frame of a square section has a handle: it is cut to its sixteen corners and along both ways
+/// round, seventeen edges, but for one where its flat top or bottom stays a ring.
 #[test]
 fn a_frame_with_a_hole_is_cut_to_pieces_without_strain() {
     let sheet = ring(4, 4, |i, j| {

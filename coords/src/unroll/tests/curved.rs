@@ -60,8 +60,8 @@ fn a_sphere_is_refused_with_its_deficits() {
 }
 
 /// The tangents of a helix of the radius `r` and the slope `c` are a developable surface, whose edge has the
-/// curvature `r / (r^2 + c^2)` of the helix in the plane too. Deficits of a mesh of `n` columns add up to less
-/// than a multiple of `n^-2`, and so do strain and error of the curvature.
+/// curvature `r / (r^2 + c^2)` of the helix in the plane too. Deficits of a mesh of `n` columns add up to
+/// less than a multiple of `n^-2`, and so do strain and error of the curvature.
 #[test]
 fn tangents_of_a_helix_have_its_curvature_in_the_plane() {
     let (r, c) = (1.0_f64, 0.4);

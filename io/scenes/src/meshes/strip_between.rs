@@ -15,10 +15,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::path::PathBuf;
 
-/// The strip between two curves that is developable, or as nearly so as it can be: its rulings join points of the
-/// curves whose tangents lie in one plane with the ruling. Both curves go smoothly through their points from
-/// start to end; if both are closed (the last point is the first one) the strip is. The strip starts in its place
-/// in space, and its edges keep the lengths that they have there.
+/// The strip between two curves that is developable, or as nearly so as it can be: its rulings join points of
+/// the curves whose tangents lie in one plane with the ruling. Both curves go smoothly through their points
+/// from start to end; if both are closed (the last point is the first one) the strip is. The strip starts in
+/// its place in space, and its edges keep the lengths that they have there.
 ///
 /// ```toml
 /// [sheet.mesh.strip_between]

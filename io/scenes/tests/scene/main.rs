@@ -35,6 +35,7 @@ mod sheets;
 mod skip;
 mod starts;
 mod stiffening;
+mod strips;
 mod swelling;
 mod switches;
 mod values;

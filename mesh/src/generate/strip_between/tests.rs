@@ -55,8 +55,8 @@ fn circles_about_an_axis_are_joined_by_a_cone() {
     }
 }
 
-/// Circles in planes that are tilted against each other are joined by a developable surface, whose rulings have
-/// parallel tangent planes at both ends: cells become plane with the square of their width.
+/// Circles in planes that are tilted against each other are joined by a developable surface, whose rulings
+/// have parallel tangent planes at both ends: cells become plane with the square of their width.
 #[test]
 fn tilted_circles_are_joined_by_plane_cells() {
     let warps = [24, 48, 96].map(|columns| {
@@ -72,8 +72,8 @@ fn tilted_circles_are_joined_by_plane_cells() {
 }
 
 /// A helix and a curve along its tangents at another distance: rulings are the tangents, to the error of
-/// curves through points. With rows inside, angle deficits add up to less than a multiple of the square of the
-/// width of cells.
+/// curves through points. With rows inside, angle deficits add up to less than a multiple of the square of
+/// the width of cells.
 #[test]
 fn a_pair_of_helices_is_joined_by_tangents() {
     let (r, c) = (0.1_f64, 0.04_f64);
