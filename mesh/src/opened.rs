@@ -65,8 +65,8 @@ impl Opened {
             while let Some((face, turned)) = open.pop_front() {
                 for &(next, agrees) in &beside[face] {
                     if is_turned[next].is_none() {
-                        is_turned[next] = Some(turned != !agrees);
-                        open.push_back((next, turned != !agrees));
+                        is_turned[next] = Some(turned == agrees);
+                        open.push_back((next, turned == agrees));
                     }
                 }
             }

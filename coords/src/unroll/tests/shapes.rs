@@ -39,7 +39,7 @@ pub(super) fn cone(sides: usize, rings: usize, half_angle: f64, length: f64) -> 
         }
     }
     let number = |i: usize, j: usize| (1 + j * sides + i % sides) as u32;
-    let mut faces = cells(sides, rings - 1, |i, j| number(i, j));
+    let mut faces = cells(sides, rings - 1, number);
     // Seen from outside they run the other way round, as those at the apex do.
     faces.iter_mut().for_each(|f| f.swap(1, 2));
     faces.extend((0..sides).map(|i| [0, number(i, 0), number(i + 1, 0)]));
