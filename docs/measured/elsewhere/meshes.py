@@ -15,7 +15,8 @@ def write(name, points, faces):
 
 def union_jack(columns, rows, width, height, bump=0.0):
     wave = lambda i, j: bump * math.sin(math.pi * i / columns) * math.sin(math.pi * j / rows)
-    points = [(width * i / columns, height * j / rows, wave(i, j)) for j in range(rows + 1) for i in range(columns + 1)]
+    corners = [(i, j) for j in range(rows + 1) for i in range(columns + 1)]
+    points = [(width * i / columns, height * j / rows, wave(i, j)) for i, j in corners]
     faces = []
     for j in range(rows):
         for i in range(columns):

@@ -100,8 +100,9 @@ def same_error(kinds):
     print("| program | " + " | ".join(heads) + " |")
     print("|" + "---|" * (1 + len(heads)))
     for name, program, settings, _ in PROGRAMS:
-        curves = [(curve(kinds, scene, size, program, settings), asked) for scene, asked in SAME_ERROR for size in SIZES]
-        cells = [for_error(points, asked) for points, asked in curves]
+        cells = []
+        for scene, asked in SAME_ERROR:
+            cells += [for_error(curve(kinds, scene, size, program, settings), asked) for size in SIZES]
         if any(cells):
             print(f"| {name} | " + " | ".join(cells) + " |")
     print()
