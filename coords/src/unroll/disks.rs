@@ -288,16 +288,29 @@ impl Places {
 }
 
 /// What cuts cost: the length of an edge times `cos^2(angle / 2)`. A crease that is folded by a right angle
-/// costs half as much as an edge in a flat place.
+/// costs half as much as an edge that folds little. A flat edge costs more than all edges that fold do
+/// together: a plane face is cut only where no way leads along folds.
+///
+/// Costs are whole multiples of a part of the shortest edge. So ways that cost the same have the same sum,
+/// however the mesh is turned, and the numbers of their vertices decide.
 fn costs(sheet: &Sheet, angles: &[Option<f64>]) -> Vec<f64> {
-    let folded = angles
-        .iter()
-        .map(|angle| (0.5 * angle.unwrap_or(0.0)).cos().powi(2));
-    sheet
-        .lengths()
-        .iter()
-        .zip(folded)
-        .map(|(l, part)| l * part)
+    /// Folds below are flat, radians. Coordinates with seven digits let triangles tilt by this angle that are
+    /// a ten-thousandth as high as the mesh is large.
+    const FLAT: f64 = 1e-3;
+    /// The unit of costs, as a part of the shortest edge: well above round-off.
+    const UNIT: f64 = 1e-6;
+    let shortest = sheet.lengths().iter().fold(f64::INFINITY, |m, l| m.min(*l));
+    let own = sheet.lengths().iter().zip(angles).map(|(l, angle)| {
+        let angle = angle.unwrap_or(0.0);
+        let cost = l / shortest * (0.5 * angle).cos().powi(2);
+        ((cost / UNIT).round(), angle.abs() < FLAT)
+    });
+    let own: Vec<(f64, bool)> = own.collect();
+    let folds: f64 = own.iter().filter(|c| !c.1).map(|c| c.0).sum();
+    // A flat edge costs at least `1 / UNIT`.
+    let flat = 1.0 + (UNIT * folds).ceil();
+    own.into_iter()
+        .map(|(cost, is_flat)| if is_flat { flat * cost } else { cost })
         .collect()
 }
 

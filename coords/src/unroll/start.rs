@@ -7,37 +7,49 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 /// Lays face after face beside one that lies already, with the lengths of its edges, breadth first: exact for
-/// what is developable.
+/// what is developable. A vertex lies where its first face has it.
+///
+/// Each face continues from the corners of the face before, not from vertices that other faces have placed.
+/// So the turns of faces add up, and errors grow with the number of faces on the way. (From vertices they
+/// would grow by a factor in each column of a long strip.)
 pub(super) fn face_by_face(sheet: &Sheet) -> Vec<Point> {
     let t = sheet.topology();
     let length = |a: VertexId, b: VertexId| {
         let edge = t.find_edge(a, b);
         edge.map_or(0.0, |e| sheet.lengths()[e.index()])
     };
+    let beyond = |a: VertexId, b: VertexId, c: VertexId, [p, q]: [Point; 2]| {
+        third(p, q, [length(a, b), length(b, c), length(c, a)])
+    };
     let mut points: Vec<Option<Point>> = vec![None; t.vertex_count()];
     let mut is_laid = vec![false; t.face_count()];
     let first = middle(sheet);
-    let [a, b, _] = t.faces()[first.index()];
-    points[a.index()] = Some([0.0; 2]);
-    points[b.index()] = Some([length(a, b), 0.0]);
+    let [a, b, c] = t.faces()[first.index()];
+    let [p, q] = [[0.0; 2], [length(a, b), 0.0]];
     is_laid[first.index()] = true;
-    let mut open = VecDeque::from([first]);
-    while let Some(f) = open.pop_front() {
+    let mut open = VecDeque::from([(first, [p, q, beyond(a, b, c, [p, q])])]);
+    while let Some((f, places)) = open.pop_front() {
         let corners = t.faces()[f.index()];
-        for k in 0..3 {
-            let [a, b, c] = [k, k + 1, k + 2].map(|j| corners[j % 3]);
-            let (Some(p), Some(q), None) =
-                (points[a.index()], points[b.index()], points[c.index()])
-            else {
-                continue;
-            };
-            points[c.index()] = Some(third(p, q, [length(a, b), length(b, c), length(c, a)]));
+        for (v, place) in corners.iter().zip(places) {
+            points[v.index()].get_or_insert(place);
         }
-        for e in t.face_edges(f) {
-            for next in t.edge_faces(e).into_iter().flatten() {
-                if !std::mem::replace(&mut is_laid[next.index()], true) {
-                    open.push_back(next);
+        for k in 0..3 {
+            let [a, b] = [k, (k + 1) % 3].map(|k| (corners[k], places[k]));
+            let faces = t.find_edge(a.0, b.0).map(|e| t.edge_faces(e));
+            for next in faces.into_iter().flatten().flatten() {
+                if std::mem::replace(&mut is_laid[next.index()], true) {
+                    continue;
                 }
+                // The neighbour runs along their edge the other way.
+                let own = t.faces()[next.index()];
+                let Some(k) = own.iter().position(|v| *v != a.0 && *v != b.0) else {
+                    continue;
+                };
+                let mut others = [[0.0; 2]; 3];
+                others[(k + 1) % 3] = b.1;
+                others[(k + 2) % 3] = a.1;
+                others[k] = beyond(b.0, a.0, own[k], [b.1, a.1]);
+                open.push_back((next, others));
             }
         }
     }

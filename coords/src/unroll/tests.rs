@@ -2,6 +2,7 @@
 
 mod closed;
 mod curved;
+mod d_form;
 mod shapes;
 
 use super::overlap::overlapping;

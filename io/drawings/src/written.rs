@@ -91,8 +91,9 @@ mod tests {
             // An SVG drawing has a margin around its lines.
             let ends: Vec<[f64; 2]> = drawing.lines.iter().flat_map(|l| l.curve.ends()).collect();
             let least = [0, 1].map(|k| ends.iter().fold(f64::INFINITY, |m, p| m.min(p[k])));
+            // An SVG drawing has thirteen digits of its longer side, 0.3 m.
             let near = |p: [f64; 2], q: [f64; 2]| {
-                (p[0] - least[0] - q[0]).hypot(p[1] - least[1] - q[1]) < 1e-15
+                (p[0] - least[0] - q[0]).hypot(p[1] - least[1] - q[1]) < 2e-13
             };
             for stroke in strokes() {
                 let own = drawing.lines.iter().filter(|line| {

@@ -96,7 +96,9 @@ fn of_obj(text: &str) -> Result<Vec<[f64; 3]>, DataError> {
                     let index = index.and_then(|index| match index {
                         1.. => usize::try_from(index - 1).ok(),
                         // It counts back from the last vertex before.
-                        _ => vertices.len().checked_sub(usize::try_from(-index).ok()?),
+                        _ => vertices
+                            .len()
+                            .checked_sub(usize::try_from(index.unsigned_abs()).ok()?),
                     });
                     let index = index.filter(|v| *v < vertices.len());
                     let v = index

@@ -106,9 +106,12 @@ fn straight(flat: &Sheet, edges: &[EdgeId]) -> Vec<[VertexId; 2]> {
     lines
 }
 
-/// The ruling through the centre of each face, up to the sides of the face. Of faces that are too long for a
-/// fit of their curvature it is the edge that folds most and is no crease, as between the quadrilaterals of a
-/// strip.
+/// The rulings of bent faces.
+///
+/// Of a face whose corners all lie on outlines and creases the ruling is the edge that folds most and is no
+/// crease: as between the quadrilaterals of a strip, the mesh is straight along such edges alone. Of other
+/// faces it is a line through the centre, up to the sides of the face, in the direction of the fitted
+/// curvature.
 pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec<Stroke> {
     let flat = &unrolled.flat;
     let t = flat.topology();
@@ -125,11 +128,14 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
     let fitted = FaceCurvature::new(flat, &[], &creases).map(|curvature| curvature.rulings(&x));
     let fitted = fitted.unwrap_or_else(|_| vec![None; t.face_count()]);
     let mut bends = vec![0.0; t.edge_count()];
-    for fold in folds
-        .iter()
-        .filter(|f| !f.is_crease && f.assignment != EdgeAssignment::Flat)
-    {
-        bends[fold.edge.index()] = fold.size();
+    let mut is_at_rim: Vec<bool> = t.vertex_ids().map(|v| t.is_boundary_vertex(v)).collect();
+    for fold in folds {
+        if fold.is_crease {
+            let ends = t.edges()[fold.edge.index()];
+            ends.iter().for_each(|v| is_at_rim[v.index()] = true);
+        } else if fold.assignment != EdgeAssignment::Flat {
+            bends[fold.edge.index()] = fold.size();
+        }
     }
     let mut edges: BTreeSet<EdgeId> = BTreeSet::new();
     let mut strokes = Vec::new();
@@ -142,7 +148,8 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
     };
     for (f, ruling) in t.face_ids().zip(fitted) {
         let face = t.faces()[f.index()];
-        let Some(Ruling { direction, .. }) = ruling else {
+        let is_inside = face.iter().any(|v| !is_at_rim[v.index()]);
+        let Some(Ruling { direction, .. }) = ruling.filter(|_| is_inside) else {
             let own = t.face_edges(f).into_iter();
             let most = own.max_by(|a, b| bends[a.index()].total_cmp(&bends[b.index()]));
             edges.extend(most.filter(|e| bends[e.index()] > 0.0));

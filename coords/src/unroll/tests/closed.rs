@@ -3,7 +3,7 @@
 use super::shapes::{hull, ring};
 use super::{check, unrolled};
 use crate::{UnrollOptions, unroll};
-use isosheet_mesh::Sheet;
+use isosheet_mesh::{Sheet, fold_angle};
 use std::f64::consts::{PI, TAU};
 
 fn cube(side: f64) -> Sheet {
@@ -106,6 +106,56 @@ fn an_oloid_is_developable() {
         1.0 - sheet.area() / (4.0 * PI)
     });
     assert!(errors[1] > 0.0 && errors[0] / errors[1] > 3.0, "{errors:?}");
+}
+
+/// Of a prism over a polygon with notches only edges of the prism are cut, though its corners at the notches
+/// have angles of more than a whole turn: its plane faces stay whole.
+#[test]
+fn plane_faces_with_notches_stay_whole() {
+    // An angle, and a cross, counter-clockwise; the notches are cut into triangles from vertex 0.
+    let angle = [[0, 0], [6, 0], [6, 2], [2, 2], [2, 6], [0, 6]];
+    let angle_faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]];
+    let stairs = [
+        [0, 0],
+        [6, 0],
+        [6, 2],
+        [4, 2],
+        [4, 4],
+        [2, 4],
+        [2, 6],
+        [0, 6],
+    ];
+    let stairs_faces = [
+        [0, 1, 3],
+        [1, 2, 3],
+        [0, 3, 5],
+        [3, 4, 5],
+        [0, 5, 7],
+        [5, 6, 7],
+    ];
+    for (outline, faces) in [(&angle[..], &angle_faces[..]), (&stairs, &stairs_faces)] {
+        let n = outline.len() as u32;
+        let levels = [0.0, 1.5].into_iter();
+        let x = levels.flat_map(|z| {
+            outline
+                .iter()
+                .flat_map(move |[x, y]| [f64::from(*x), f64::from(*y), z])
+        });
+        let caps = faces
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, c, b], [n + a, n + b, n + c]]);
+        let sides = (0..n).flat_map(|k| {
+            let [a, b] = [k, (k + 1) % n];
+            [[a, b, n + b], [a, n + b, n + a]]
+        });
+        let sheet = Sheet::new(x.collect(), &caps.chain(sides).collect::<Vec<_>>()).unwrap();
+        let unrolled = unrolled(&sheet);
+        for e in &unrolled.cuts {
+            let fold = fold_angle(sheet.topology(), sheet.positions(), *e).unwrap();
+            assert!((fold.abs() - PI / 2.0).abs() < 1e-12, "{e}: {fold}");
+        }
+        assert!(unrolled.pieces.len() <= 3, "{}", unrolled.pieces.len());
+    }
 }
 
 /// A square frame of a square section has a handle: it is cut to its sixteen corners and along both ways

@@ -147,3 +147,33 @@ fn a_whole_sphere_is_refused() {
     let error = unroll(&sheet, &UnrollOptions::default()).unwrap_err();
     assert!(matches!(error, UnrollError::Curved { .. }), "{error}");
 }
+
+/// A strip of tangents of a helix of several rows that winds round more than twice lies on itself, and is
+/// divided. Its layout keeps the digits of its lengths along hundreds of columns: the deficits of `n` columns
+/// are about `n^-3`, less than `1e-8` here, and strain of that order is left.
+#[test]
+fn a_long_strip_of_tangents_is_divided() {
+    let (r, c, turn) = (1.0_f64, 1.0 / 3.0, 14.0_f64);
+    let speed = r.hypot(c);
+    let at = |k: f64, along: f64| {
+        let (u, l) = (turn * k / 200.0, 1.0 / 3.0 + along);
+        let (s, co) = u.sin_cos();
+        [
+            r * co - l * r * s / speed,
+            r * s + l * r * co / speed,
+            c * u + l * c / speed,
+        ]
+    };
+    let sheet = strip(200, 3, at, 0.4).unwrap();
+    let unrolled = unroll(&sheet, &UnrollOptions::default()).unwrap();
+    assert!(unrolled.deficits.iter().all(|d| d.abs() < 1e-8));
+    check(&sheet, &unrolled, 1e-7);
+    // In the plane the strip turns by the curvature of the helix times its length.
+    let turns = turn * r / speed / TAU;
+    assert!((2.0..3.0).contains(&turns));
+    assert!(
+        (3..=4).contains(&unrolled.pieces.len()),
+        "{}",
+        unrolled.pieces.len()
+    );
+}

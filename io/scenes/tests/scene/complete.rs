@@ -24,6 +24,7 @@ pub(crate) fn scenes() -> Vec<SceneFile> {
         "{ kresling = { columns = 2, rows = 2, base = 0.1, side = 0.1, angle = 60 } }",
         "{ hypar = { rings = 2, side = 0.1 } }",
         "{ strip_between = { first = [[0, 0, 0], [1, 0, 0]], second = [[0, 1, 0], [1, 1, 0]], columns = 2, rows = 2 } }",
+        "{ strip_between = { first = { path = \"a.csv\", scale = 0.1 }, second = [[0, 1, 0], [1, 1, 0]], columns = 2 } }",
         "{ square_twist = { side = 0.2, square = 0.1, angle = 45 } }",
         "{ miura = { columns = 2, rows = 2, straight = 1, zigzag = 1, angle = 60 } }",
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"falling\" } }",

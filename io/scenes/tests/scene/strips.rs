@@ -59,7 +59,12 @@ fn bad_curves_are_named() {
         ("[[0, 0, 0]]", &second[..], "columns = 8", "first"),
         ("[[0, 0, 0], [0, 0, 0]]", &second, "columns = 8", "first"),
         (&first, "[[0, 0, 0], [nan, 0, 0]]", "columns = 8", "second"),
-        (&first, "{ path = \"\" }", "columns = 8", "second.path"),
+        (
+            &first,
+            "{ path = \"\" }",
+            "columns = 8",
+            "the path is empty",
+        ),
         (
             &first,
             "{ path = \"none.csv\" }",
