@@ -7,17 +7,20 @@ use std::collections::VecDeque;
 /// The edges of a cut across a disk, from boundary to boundary, which leaves two faces on different sides;
 /// `None` if none was found.
 ///
-/// The cut crosses the shortest way from the one to the other through the faces: one edge of it, and the
-/// cheapest paths from its ends to the boundary. Of all such cuts it is that with the least cost for the area
-/// of the smaller side.
+/// The cut crosses the shortest way from the one to the other through the faces once: at one edge of it, from
+/// whose ends the cheapest paths lead to the boundary that do not cross that way. Of all such cuts it is that
+/// with the least cost for the area of the smaller side.
 pub(super) fn between(sheet: &Sheet, costs: &[f64], faces: [FaceId; 2]) -> Option<Vec<EdgeId>> {
     let t = sheet.topology();
-    let mut paths = Paths::new(t, costs);
+    let way = way(sheet, faces);
+    let mut beside = costs.to_vec();
+    way.iter().for_each(|e| beside[e.index()] = f64::INFINITY);
+    let mut paths = Paths::new(t, &beside);
     let boundary = t.vertex_ids().filter(|v| t.is_boundary_vertex(*v));
     boundary.for_each(|v| paths.start(v));
     paths.reach_all();
     let mut best: Option<(f64, Vec<EdgeId>)> = None;
-    for e in way(sheet, faces) {
+    for e in way {
         let [one, other] = t.edges()[e.index()].map(|v| paths.back(v));
         let root = |way: &[(EdgeId, VertexId)], k: usize| {
             way.last().map_or(t.edges()[e.index()][k], |last| last.1)
