@@ -16,7 +16,7 @@ use isosheet_formats::{
     read_mesh_with, write_pattern,
 };
 use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{EdgeId, Opened, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, Opened, Sheet, VertexId, fold_angle};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -141,7 +141,13 @@ impl Unroll {
             gap: self.gap.map(|gap| gap.metres),
         };
         let number = |v: VertexId| VertexId(opened.origins[v.index()]);
-        let unrolled = unroll(&sheet, &options).map_err(|e| failed(e.numbered(number)))?;
+        let unrolled = unroll(&sheet, &options).map_err(|e| {
+            let fold = match &e {
+                UnrollError::Curved { vertex, .. } => largest_fold(&sheet, *vertex),
+                _ => 0.0,
+            };
+            failed(e.numbered(number), fold)
+        })?;
         let folds = folds::folds(&mesh, &opened.origins, &sheet, &unrolled, options.crease);
         let mut rulings = None;
         if DrawingFormat::of(&self.out).is_some() {
@@ -257,8 +263,19 @@ impl Unroll {
     }
 }
 
-/// A sheet that cannot be unrolled.
-fn failed(error: UnrollError) -> Failure {
+/// The largest fold of the edges at a vertex, radians.
+fn largest_fold(sheet: &Sheet, v: VertexId) -> f64 {
+    let t = sheet.topology();
+    let folds = t
+        .vertex_edges(v)
+        .iter()
+        .filter_map(|e| fold_angle(t, sheet.positions(), *e));
+    folds.fold(0.0, |m, angle| m.max(angle.abs()))
+}
+
+/// A sheet that cannot be unrolled; `fold` is the largest one, radians, at the vertex with the largest
+/// deficit.
+fn failed(error: UnrollError, fold: f64) -> Failure {
     match error {
         UnrollError::Option { .. } => Failure::of(Code::CommandLine, &error),
         UnrollError::Curved {
@@ -267,14 +284,13 @@ fn failed(error: UnrollError) -> Failure {
             strain,
             ..
         } => {
+            let degrees = rounded(fold.to_degrees(), f64::floor);
             let mut remedy = format!(
-                "cut the sheet at {vertex} by `--cut A-B,...`, or let `--crease-angle` be smaller so that cuts lead to \
-                 vertices on softer folds"
+                "cut the sheet at {vertex} by `--cut A-B,...`, or let cuts lead to it and to others on folds by \
+                 {degrees} degrees or more by `--crease-angle {degrees}`"
             );
             if strain.abs() < 1.0 {
-                // Rounded upwards to two digits.
-                let digit = 10_f64.powf(strain.abs().log10().floor() - 1.0);
-                let accepted = brief((strain.abs() / digit).ceil() * digit);
+                let accepted = rounded(strain.abs(), f64::ceil);
                 let [a, b] = ends.map(|v| v.0);
                 remedy +=
                     &format!(", or accept the strain of edge {a}-{b} by `--strain {accepted}`");
@@ -282,5 +298,14 @@ fn failed(error: UnrollError) -> Failure {
             Failure::of(Code::Input, &error).remedy(remedy)
         }
         error => Failure::of(Code::Input, &error),
+    }
+}
+
+/// A positive number with two digits.
+fn rounded(value: f64, round: fn(f64) -> f64) -> String {
+    let digit = 10_f64.powf(value.log10().floor() - 1.0);
+    match value > 0.0 {
+        true => brief(round(value / digit) * digit).to_string(),
+        false => "0".to_owned(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::vec2::{Point, dot, sub, twice_area};
 use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
-use isosheet_mesh::{EdgeId, Sheet};
+use isosheet_mesh::{EdgeId, Sheet, VertexId};
 
 /// Steps at most: quadratic convergence takes five from the layout of what is developable, and layouts with
 /// strain gain at least a digit in some steps.
@@ -193,14 +193,19 @@ impl<'a> LeastSquares<'a> {
     }
 }
 
-/// The first face of a layout that is turned over or has no area.
+/// The first face of a layout that is turned over or has no area, as [`Sheet::MIN_RELATIVE_ALTITUDE`] says.
+/// (A thin triangle loses its altitude by a strain of the square of it.)
 pub(super) fn turned_over(sheet: &Sheet, points: &[Point]) -> Option<usize> {
     let faces = sheet.topology().faces();
-    let area = |f: &[isosheet_mesh::VertexId; 3]| twice_area(f.map(|v| points[v.index()]));
-    // What is not a number is turned over too.
-    faces
-        .iter()
-        .position(|f| area(f).partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater))
+    let has_area = |f: &[VertexId; 3]| {
+        let corners = f.map(|v| points[v.index()]);
+        let side = |k: usize| sub(corners[(k + 1) % 3], corners[k]);
+        let squared = (0..3).map(|k| dot(side(k), side(k)));
+        let longest = squared.fold(0.0, f64::max);
+        // What is not a number has none.
+        twice_area(corners) > Sheet::MIN_RELATIVE_ALTITUDE * longest
+    };
+    faces.iter().position(|f| !has_area(f))
 }
 
 /// The edge with the largest strain of a layout, and its strain `length / rest length - 1`.

@@ -2,7 +2,7 @@
 
 use isosheet_coords::Unrolled;
 use isosheet_formats::{EdgeAssignment, FileCrease, MeshFile};
-use isosheet_mesh::{CreasePattern, EdgeId, Sheet, fold_angle};
+use isosheet_mesh::{CreasePattern, EdgeId, FaceId, Sheet, fold_angle};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -19,6 +19,8 @@ pub(super) struct Fold {
     pub(super) angle: Option<f64>,
     /// Whether it is drawn as a crease.
     pub(super) is_crease: bool,
+    /// Whether it folds by more than coordinates with seven digits can say: [`round_off`].
+    pub(super) is_bent: bool,
 }
 
 impl Fold {
@@ -42,6 +44,10 @@ pub(super) fn folds(
     let known = mesh.creases.iter().map(|c| (key(c.ends), c));
     let known: HashMap<[u32; 2], &FileCrease> = known.collect();
     let (t, flat) = (given.topology(), unrolled.flat.topology());
+    let size = given
+        .positions()
+        .iter()
+        .fold(0.0_f64, |m, c| m.max(c.abs()));
     let inside = flat.edge_ids().filter(|e| !flat.is_boundary_edge(*e));
     let fold = |edge: EdgeId| {
         let own = unrolled.given_edge(t, edge)?;
@@ -60,14 +66,26 @@ pub(super) fn folds(
             },
             _ => of_angle(angle),
         };
+        let is_bent = angle.is_some_and(|a| a.abs() > round_off(given, own, size));
         Some(Fold {
             edge,
             assignment,
             angle,
-            is_crease: named.is_some() || angle.is_some_and(|a| a.abs() >= crease.max(FLAT)),
+            is_crease: named.is_some() || is_bent && angle.is_some_and(|a| a.abs() >= crease),
+            is_bent,
         })
     };
     inside.filter_map(fold).collect()
+}
+
+/// The fold angle, radians, that coordinates with seven digits leave open at an edge of a mesh whose largest
+/// coordinate is `size`, metres: a corner is known to `1e-7 size`, and tilts its face by this over the altitude
+/// of the face.
+fn round_off(sheet: &Sheet, e: EdgeId, size: f64) -> f64 {
+    let faces = sheet.topology().edge_faces(e).into_iter().flatten();
+    let altitude = |f: FaceId| 2.0 * sheet.face_areas()[f.index()] / sheet.lengths()[e.index()];
+    let tilts = faces.map(|f| 1e-7 * size / altitude(f));
+    tilts.sum::<f64>().max(FLAT)
 }
 
 fn of_angle(angle: f64) -> (EdgeAssignment, Option<f64>) {

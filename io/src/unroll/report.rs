@@ -195,10 +195,7 @@ impl Report<'_> {
                 counted(opened.seams.len(), "edge", "edges")
             ));
         }
-        let soft = self
-            .folds
-            .iter()
-            .filter(|f| !f.is_crease && f.size() > ROUND_OFF);
+        let soft = self.folds.iter().filter(|f| !f.is_crease && f.is_bent);
         let (count, most) = soft.fold((0, 0.0_f64), |(n, m), f| (n + 1, m.max(f.size())));
         if count > 0 {
             notes.push(format!(

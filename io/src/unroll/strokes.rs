@@ -106,7 +106,7 @@ fn straight(flat: &Sheet, edges: &[EdgeId]) -> Vec<[VertexId; 2]> {
     lines
 }
 
-/// The rulings of bent faces.
+/// The rulings of faces that bend along one of their edges.
 ///
 /// Of a face whose corners all lie on outlines and creases the ruling is the edge that folds most and is no
 /// crease: as between the quadrilaterals of a strip, the mesh is straight along such edges alone. Of other
@@ -133,7 +133,7 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
         if fold.is_crease {
             let ends = t.edges()[fold.edge.index()];
             ends.iter().for_each(|v| is_at_rim[v.index()] = true);
-        } else if fold.assignment != EdgeAssignment::Flat {
+        } else if fold.is_bent {
             bends[fold.edge.index()] = fold.size();
         }
     }
@@ -149,10 +149,13 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
     for (f, ruling) in t.face_ids().zip(fitted) {
         let face = t.faces()[f.index()];
         let is_inside = face.iter().any(|v| !is_at_rim[v.index()]);
+        let own = t.face_edges(f).into_iter();
+        let most = own.max_by(|a, b| bends[a.index()].total_cmp(&bends[b.index()]));
+        let Some(most) = most.filter(|e| bends[e.index()] > 0.0) else {
+            continue;
+        };
         let Some(Ruling { direction, .. }) = ruling.filter(|_| is_inside) else {
-            let own = t.face_edges(f).into_iter();
-            let most = own.max_by(|a, b| bends[a.index()].total_cmp(&bends[b.index()]));
-            edges.extend(most.filter(|e| bends[e.index()] > 0.0));
+            edges.insert(most);
             continue;
         };
         let own = face.map(|v| given.position(unrolled.vertices[v.index()]));

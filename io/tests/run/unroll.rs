@@ -180,6 +180,10 @@ fn a_band_is_a_rectangle_with_its_folded_form() {
         said.contains("23 edges: 23 mountains, folded by 15 degrees"),
         "{said}"
     );
+    // Between quadrilaterals from rim to rim there is one ruling for each side, whatever their shape.
+    fs::write(folder.join("ring.obj"), prism(60, 30.0, 5.0)).unwrap();
+    let said = unrolled(folder, "ring.obj", "ring.svg", &["--unit", "mm"]);
+    assert!(said.contains("rulings   59 lines"), "{said}");
     // Rulings are not cut, nor part of the mesh.
     unrolled(folder, "band.obj", "band.svg", &["--unit", "mm"]);
     let (mesh, said) = meshed(folder, "band.svg", &["--spacing", "20mm"]);
@@ -421,6 +425,46 @@ fn meshes_of_other_people() {
                     .all(|z| *z == 0.0)
             );
         }
+    }
+    // Solids and folded states, as the page on patterns lists them: pieces, and the largest strain.
+    for (name, options, pieces, strain) in [
+        ("tools/cone.obj", &[][..], 1, 1e-14),
+        ("tools/cylinder.obj", &[], 1, 1e-12),
+        ("nasty/closed_tet.obj", &[], 1, 1e-14),
+        ("nasty/closed_pentagons.obj", &[], 1, 1e-14),
+        ("fold/edemaine_simple.fold", &[], 1, 1e-14),
+        ("fold/edemaine_squaretwist_3d.fold", &[], 1, 1e-6),
+        ("fold_reference/simpleVertex_50.fold", &[], 1, 1e-14),
+        ("tools/skirt_annulus_nonplanar.obj", &[], 1, 1e-7),
+        ("tools/punching_press_fixed.off", &[], 4, 1e-12),
+        ("tools/punching_press_p2.off", &[], 6, 1e-12),
+        ("tools/punching_press_p5.off", &[], 13, 1e-3),
+        ("tools/plate_holes.STL", &["--crease-angle", "10"], 12, 1e-3),
+    ] {
+        let path = data.join(name).display().to_string();
+        let said = unrolled(folder, &path, "out.obj", options);
+        let words = if pieces == 1 {
+            " piece of"
+        } else {
+            " pieces of"
+        };
+        assert!(
+            said.contains(&format!("out.obj: {pieces}{words}")),
+            "{name}: {said}"
+        );
+        let [flat, given] = [folder.join("out.obj"), path.into()].map(|path| {
+            let options = MeshOptions {
+                weld: name.ends_with("STL").then_some(0.0),
+                ..MeshOptions::default()
+            };
+            read_mesh_with(&path, &options)
+                .unwrap()
+                .into_sheet()
+                .unwrap()
+        });
+        let error = flat.area() / given.area() - 1.0;
+        // Areas have the strains of both directions.
+        assert!(error.abs() <= 2.0 * strain, "{name}: {error}");
     }
     // A folded state of a pattern, and the pattern itself, which is a square of the side 1 in nine panels.
     let folded = data

@@ -2,7 +2,7 @@
 
 use crate::{parse, simulation};
 use isosheet_mesh::generate::strip_between;
-use isosheet_scenes::SceneFile;
+use isosheet_scenes::{SceneFile, SceneFileError};
 use std::fs;
 
 /// An arc of a circle about the z axis.
@@ -51,44 +51,70 @@ fn strips_are_those_of_the_generator() {
     assert!(most > 1e-6 && most < 0.1, "{most}");
 }
 
-/// What is wrong is told at its key.
+/// What is wrong is told at its key, with what to do.
 #[test]
 fn bad_curves_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("folder.csv")).unwrap();
+    for (name, text) in [
+        ("empty.csv", ""),
+        ("words.csv", "0 0 0\n1 two 3\n"),
+        ("good.csv", "0 0 0\n1 0 0\n"),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
     let [first, second] = [arc(0.1, 0.0), arc(0.06, 0.08)].map(|points| format!("{points:?}"));
-    for (first, second, rest, expected) in [
-        ("[[0, 0, 0]]", &second[..], "columns = 8", "first"),
-        ("[[0, 0, 0], [0, 0, 0]]", &second, "columns = 8", "first"),
-        (&first, "[[0, 0, 0], [nan, 0, 0]]", "columns = 8", "second"),
+    let file = |path: &str| format!("{{ path = {path:?} }}");
+    let columns = "columns = 8";
+    let mut cases = vec![
+        ("[[0, 0, 0]]".to_owned(), second.clone(), columns, "first"),
         (
-            &first,
-            "{ path = \"\" }",
-            "columns = 8",
-            "the path is empty",
+            "[[0, 0, 0], [0, 0, 0]]".to_owned(),
+            second.clone(),
+            columns,
+            "first",
         ),
         (
-            &first,
-            "{ path = \"none.csv\" }",
-            "columns = 8",
-            "second.path",
+            first.clone(),
+            "[[0, 0, 0], [nan, 0, 0]]".to_owned(),
+            columns,
+            "second[1][0]",
         ),
         (
-            &first,
-            "{ path = \"a.csv\", scale = 0 }",
-            "columns = 8",
+            first.clone(),
+            "{ path = \"good.csv\", scale = 0 }".to_owned(),
+            columns,
             "second.scale",
         ),
-        (&first, &second, "columns = 0", "columns"),
-        (&first, &second, "columns = 8\nrows = 0", "rows"),
-        (&first, &first, "columns = 8", "strip_between"),
-    ] {
-        let text = scene(first, second, rest);
-        let error = match parse(&text) {
-            Ok(scene) => scene.build().map(|_| ()).unwrap_err().to_string(),
-            Err(error) => error.to_string(),
-        };
-        assert!(error.contains(expected), "{text}\n{error}");
+        (first.clone(), second.clone(), "columns = 0", "columns"),
+        (
+            first.clone(),
+            second.clone(),
+            "columns = 8\nrows = 0",
+            "rows",
+        ),
+        (first.clone(), first.clone(), columns, ""),
+    ];
+    for name in ["", "none.csv", "folder.csv", "empty.csv", "words.csv"] {
+        cases.push((first.clone(), file(name), columns, "second.path"));
+        cases.push((file(name), second.clone(), columns, "first.path"));
     }
-    let words = scene("\"lower.csv\"", &second, "columns = 8");
-    let error = parse(&words).unwrap_err().to_string();
-    assert!(error.contains("first"), "{error}");
+    for (first, second, rest, key) in cases {
+        let text = scene(&first, &second, rest);
+        let read = SceneFile::parse(text.clone(), &folder.path().join("test.toml"), &[]);
+        let error = match read.map(|file| file.build()) {
+            Err(SceneFileError::Scene(error)) | Ok(Err(error)) => error,
+            other => panic!("{text}: {other:?}"),
+        };
+        let placed = error.placed();
+        let whole = format!("sheet.mesh.strip_between.{key}");
+        assert_eq!(placed[0].key, whole.trim_end_matches('.'), "{error}");
+        assert!(error.to_string().contains("= help: "), "{error}");
+    }
+    let words = parse(&scene("\"lower.csv\"", &second, columns));
+    let error = words.unwrap_err().to_string();
+    assert!(
+        error.contains("first = \"lower.csv\"") && error.contains("`path`"),
+        "{error}"
+    );
 }

@@ -407,14 +407,19 @@ pose = {{ position = [0, 0, -1] }}
         }
     }
     // The scene above has all the paths of meshes that the reference knows. (Those of drawings and of meshes
-    // in motion are tried with these.)
+    // in motion are tried with these, and those of curves with strips.)
     let scenes = scenes();
     let paths = places(&scenes)
         .into_keys()
         .filter(|name| name.ends_with(".path"));
     assert_eq!(
         paths.collect::<Vec<_>>(),
-        ["DrawingFile.path", "MeshFile.path", "Sequence.path"]
+        [
+            "CurveFile.path",
+            "DrawingFile.path",
+            "MeshFile.path",
+            "Sequence.path"
+        ]
     );
     let users = schema().to_string().matches("#/$defs/MeshFile").count();
     assert_eq!(users, 4, "a path was added to scenes: try it here");
