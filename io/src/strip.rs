@@ -37,8 +37,8 @@ pub(super) fn verdict(strip: &RuledStrip) -> String {
             "developable: along each ruling the sheet has one tangent plane, to {degrees} degrees"
         ),
         false => format!(
-            "not developable: along a ruling the tangent plane turns by {degrees} degrees, as no strip between these \
-             curves turns less"
+            "not developable: along a ruling the tangent plane turns by up to {degrees} degrees, and the sum of the \
+             squares of these angles is the least that was found"
         ),
     }
 }

@@ -84,6 +84,19 @@ pub enum GenerateError {
         /// What is wrong there.
         problem: &'static str,
     },
+    /// Two curves meet where a strip is to lie between them.
+    #[error(
+        "the curves meet at ({}, {}, {}): ruling {ruling} between them is {length} m long",
+        brief(place[0]), brief(place[1]), brief(place[2]), length = brief(*length)
+    )]
+    CurvesMeet {
+        /// The ruling, from 0.
+        ruling: usize,
+        /// Where it begins, metres.
+        place: [f64; 3],
+        /// Its length, metres.
+        length: f64,
+    },
     /// The result would be too large to handle.
     #[error("the sheet would have {faces} faces, more than the {limit} that are allowed")]
     TooManyFaces {
@@ -107,6 +120,9 @@ impl Advice for GenerateError {
             Self::Curve { .. } => Some(
                 "give the points of a curve in order; a closed one has its first point once more at its end",
             ),
+            Self::CurvesMeet { .. } => {
+                Some("move the curves apart, or end both of them before they meet")
+            }
             Self::TooManyFaces { .. } => Some("use fewer cells or a lower level"),
             Self::Mesh(error) => error.advice(),
             Self::Assignment { .. } => None,

@@ -47,8 +47,8 @@ pub struct RuledStrip {
 ///
 /// # Errors
 /// [`GenerateError`] for a curve with fewer than two points, with points in the same place, or next to one
-/// that is closed where it is not, for counts below one (three columns of a closed strip), and for too many
-/// faces.
+/// that is closed where it is not, for curves that meet, for counts below one (three columns of a closed
+/// strip), and for too many faces.
 pub fn strip_between(
     first: &[[f64; 3]],
     second: &[[f64; 3]],
@@ -77,6 +77,19 @@ pub fn strip_between(
     let mut rulings: Vec<[Vec3; 2]> = ways.iter().map(|[s, t]| pairs.ends(*s, *t)).collect();
     if is_closed {
         rulings.pop();
+    }
+    // Beside a shorter one faces would have no area.
+    let shortest = Sheet::MIN_RELATIVE_ALTITUDE * pairs.first.length();
+    for (ruling, [p, q]) in rulings.iter().enumerate() {
+        let length = norm(sub(*q, *p));
+        if length <= shortest {
+            let place = *p;
+            return Err(GenerateError::CurvesMeet {
+                ruling,
+                place,
+                length,
+            });
+        }
     }
     let n = rulings.len();
     let mut x = Vec::with_capacity(3 * n * (rows + 1));

@@ -146,9 +146,14 @@ fn what_makes_no_strip_is_refused() {
         refused(&line, &line, 8, 0),
         GenerateError::Count { name: "rows", .. }
     ));
-    // A curve and itself have no area between them.
-    assert!(matches!(
-        refused(&line, &line, 8, 1),
-        GenerateError::Mesh(_)
-    ));
+    // A curve and itself have no area between them, nor have two that begin in one point.
+    let corner = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    for other in [line, corner] {
+        let met = refused(&line, &other, 8, 1);
+        assert!(
+            matches!(met, GenerateError::CurvesMeet { ruling: 0, .. }),
+            "{met}"
+        );
+        assert!(met.advice().is_some());
+    }
 }
