@@ -75,9 +75,9 @@ impl Unrolled {
 /// Lays a sheet out in the plane such that its edges keep their lengths, cutting it where it has to be cut.
 ///
 /// Each part that is no disk (a cylinder, a closed surface, one with handles) is cut open along short edges,
-/// creases before others, and cut to its corners: vertices with an angle deficit of more than
-/// [`UnrollOptions::largest_deficit`] that are on a crease or alone, as the apex of a cone and the corners of
-/// a polyhedron. A part that lies flat around a hole is not cut there.
+/// creases before others and flat edges last. It is cut to its corners: vertices with an angle deficit of
+/// more than [`UnrollOptions::largest_deficit`] that are on a crease or alone, as the apex of a cone and the
+/// corners of a polyhedron. A part that lies flat around a hole is not cut there.
 ///
 /// The positions minimise `sum w (|p - q|^2 / l^2 - 1)^2` over the edges, with the areas that belong to the
 /// edges as weights, by Gauss and Newton's method from triangles that are laid side by side. Where no
@@ -100,8 +100,8 @@ impl Unrolled {
 /// ```
 ///
 /// # Errors
-/// [`UnrollError`]: the strain of an edge is larger than [`UnrollOptions::strain`], with the vertex that has the
-/// largest deficit; an option is out of range; or a piece cannot be laid out.
+/// [`UnrollError`]: the strain of an edge is larger than [`UnrollOptions::strain`], with the vertex that has
+/// the largest deficit; an option is out of range; or a piece cannot be laid out.
 pub fn unroll(sheet: &Sheet, options: &UnrollOptions) -> Result<Unrolled, UnrollError> {
     options.validate()?;
     let t = sheet.topology();

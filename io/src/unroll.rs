@@ -31,10 +31,11 @@ Examples:
                                                accept edges that are longer or shorter by 1 %";
 
 const NOTES: &str = "\
-A part that is no disk is cut open along short edges, creases before others, and cut to its corners: vertices whose angles
-lack more than a strain makes up for, on creases or alone. Then all edges get their lengths in the plane. Where the surface
-is not developable the edges are strained, as little as possible in the mean of the squares; more than the limit of --strain
-is refused, with the vertex that has the largest angle deficit. A piece that would lie on itself is cut further.
+A part that is no disk is cut open along short edges, creases before others and plane faces last, and cut to its corners:
+vertices whose angles lack more than a strain makes up for, on creases or alone. Then all edges get their lengths in the
+plane. Where the surface is not developable the edges are strained, as little as possible in the mean of the squares.
+More than the limit of --strain is refused, with the vertex that has the largest angle deficit. A piece that would lie on
+itself is cut further.
 
 Files that are read: all mesh files that `isosheet convert` reads; vertices count from 0
 Files that are written:

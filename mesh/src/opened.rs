@@ -34,7 +34,7 @@ pub struct Opened {
 type Side = ([u32; 2], usize, usize);
 
 impl Opened {
-    /// The faces cut along the edges `[a, b]`, `a < b`, that `is_cut` names, and along those where more than
+    /// The faces cut along the edges `[a, b]`, `a < b`, that `is_cut` names, and along edges where more than
     /// two faces meet.
     pub fn along(faces: &[[u32; 3]], is_cut: impl Fn([u32; 2]) -> bool) -> Self {
         let sides = sides(faces);
@@ -152,7 +152,7 @@ fn tail(faces: &[[u32; 3]], side: &Side) -> u32 {
     faces[side.1][side.2]
 }
 
-/// All sides of all faces, those of an edge one after the other.
+/// All sides of all faces, in the order of their edges.
 fn sides(faces: &[[u32; 3]]) -> Vec<Side> {
     let of_face = |(f, face): (usize, &[u32; 3])| {
         [0, 1, 2].map(|k| {

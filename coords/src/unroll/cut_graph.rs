@@ -21,8 +21,8 @@ impl CutGraph<'_> {
     ///
     /// Handles are cut along the shortest loops through one vertex (tree and cotree: Erickson and Whittlesey,
     /// *Greedy optimal homotopy and homology generators*, SODA 2005). Then boundaries, loops, given edges and
-    /// corners are joined by shortest paths, always the nearest to those that are joined (Takahashi and
-    /// Matsuyama 1980: at most twice as long as the shortest tree).
+    /// corners are joined by shortest paths. The nearest one comes next each time: the tree is at most twice
+    /// as long as the shortest one (Takahashi and Matsuyama 1980).
     pub(super) fn cuts(&self) -> Vec<bool> {
         let t = self.topology;
         let mut cuts = self.given.to_vec();

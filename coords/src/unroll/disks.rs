@@ -105,8 +105,8 @@ impl Disks<'_> {
         Ok(rejoined.unwrap_or(laid))
     }
 
-    /// The vertices inside to which the part is cut: those with a deficit of more than a limit, where they
-    /// are on a crease, or the only ones around, as the apex of a cone is. Elsewhere the part is curved.
+    /// The vertices inside to which the part is cut. Each has a deficit of more than a limit, and is on a
+    /// crease or has no neighbour with such a deficit, as the apex of a cone. Elsewhere the part is curved.
     fn corners(
         &self,
         sheet: &Sheet,

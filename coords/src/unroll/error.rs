@@ -77,7 +77,7 @@ pub enum UnrollError {
 }
 
 impl UnrollError {
-    /// The error with other numbers of vertices: those of the mesh that a sheet was made of.
+    /// The error with the numbers that vertices have in the mesh of which a sheet was made.
     pub fn numbered(self, number: impl Fn(VertexId) -> VertexId) -> Self {
         match self {
             Self::Curved {

@@ -75,7 +75,7 @@ impl<'a> LeastSquares<'a> {
         for _ in 0..STEPS {
             let step = match self.step(points, damping) {
                 Ok(step) => step,
-                // The damping is that of Levenberg and Marquardt, relative to the diagonal.
+                // Levenberg and Marquardt's damping, relative to the diagonal.
                 Err(error) if damping >= 1.0 => return Err(error),
                 Err(_) => {
                     damping = (10.0 * damping).max(f64::EPSILON);

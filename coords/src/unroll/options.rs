@@ -10,10 +10,10 @@ pub struct UnrollOptions {
     /// The largest strain of an edge, `|length / rest length - 1|`, that is accepted of a layout, from 1e-12
     /// to 1. Default 1e-3: a tenth of a millimetre in ten centimetres, which is what cutting plotters keep.
     pub strain: f64,
-    /// A fold by this angle or more is a crease, radians from 0 to pi. Default 30 degrees: folds that are
-    /// smaller may be those of chords of a curved surface, and drawings are divided into chords that turn by
-    /// as much at most. Vertices of creases with an [angle deficit](isosheet_mesh::angle_deficits) are
-    /// corners, to which the sheet is cut.
+    /// A fold by this angle or more is a crease, radians from 0 to pi. Default 30 degrees: smaller folds may
+    /// belong to chords of a curved surface, and drawings are divided into chords that turn by as much at
+    /// most. Vertices of creases with an [angle deficit](isosheet_mesh::angle_deficits) are corners, to which
+    /// the sheet is cut.
     pub crease: f64,
     /// Edges along which the sheet is cut in any case. Default none.
     pub cuts: Vec<EdgeId>,
@@ -39,7 +39,7 @@ impl UnrollOptions {
     /// The largest angle deficit, radians, of a vertex to which no cut leads: `4 pi` times the strain.
     ///
     /// Around a vertex with the deficit `d` the rim is shorter by the part `d / 2 pi` than in the plane. The
-    /// least strain is that of spokes that are shorter and a rim that is longer by half of it.
+    /// least strain makes spokes shorter and the rim longer, by half of that part each.
     pub fn largest_deficit(&self) -> f64 {
         4.0 * PI * self.strain
     }

@@ -3,7 +3,8 @@
 use super::vec2::{Point, along, cross, sub};
 
 /// Turns a piece such that its bounding box has the least area, lies along the x axis, and begins at the
-/// origin; returns its sides. A side of the convex hull lies on a side of that box (Freeman and Shapira 1975).
+/// origin; returns its sides. A side of the convex hull lies on a side of that box (Freeman and Shapira
+/// 1975).
 pub(super) fn straighten(points: &mut [Point]) -> [f64; 2] {
     let hull = hull(points);
     let mut best: Option<(f64, Point)> = None;

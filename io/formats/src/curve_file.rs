@@ -18,7 +18,7 @@ pub fn read_curve(path: &Path) -> Result<Vec<[f64; 3]>, FileError> {
 /// The points of a curve. In an OBJ file (.obj) they are the vertices of its lines `l`, which have to follow
 /// one another, or all vertices where it has no lines. Any other file has a point on each line: three numbers
 /// with blanks, commas or semicolons between them; a line that begins with `#` is a comment, and a first line
-/// of words is a heading. The unit is that of the file.
+/// of words is a heading. Points have the unit of the file.
 ///
 /// ```
 /// let text = "x, y, z\n0, 0, 0\n1, 0, 0.5\n";

@@ -30,8 +30,8 @@ impl Fold {
     }
 }
 
-/// The folds of all edges inside of the pieces. Angles are those of the mesh in space; where it is flat
-/// there, and of edges that lie on each other, those that its file has. Creases are folds of at least
+/// The folds of all edges inside of the pieces. Angles come from the mesh in space. Where it is flat, and at
+/// faces that lie on each other, they come from its file. Creases are folds of at least
 /// `crease` radians, and all edges that the file names mountains, valleys or unassigned.
 pub(super) fn folds(
     mesh: &MeshFile,
@@ -79,8 +79,8 @@ pub(super) fn folds(
 }
 
 /// The fold angle, radians, that coordinates with seven digits leave open at an edge of a mesh whose largest
-/// coordinate is `size`, metres: a corner is known to `1e-7 size`, and tilts its face by this over the altitude
-/// of the face.
+/// coordinate is `size`, metres: a corner is known to `1e-7 size`, and tilts its face by this over the
+/// altitude of the face.
 fn round_off(sheet: &Sheet, e: EdgeId, size: f64) -> f64 {
     let faces = sheet.topology().edge_faces(e).into_iter().flatten();
     let altitude = |f: FaceId| 2.0 * sheet.face_areas()[f.index()] / sheet.lengths()[e.index()];

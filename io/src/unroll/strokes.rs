@@ -32,7 +32,7 @@ pub(super) fn outlines(flat: &Sheet) -> Vec<Stroke> {
 
 /// The creases. Those that fold alike and go straight on are one line.
 pub(super) fn creases(flat: &Sheet, folds: &[Fold]) -> Vec<Stroke> {
-    // Digits that angles have after the layout: those that differ by less are alike.
+    // Angles have nine digits after the layout: they are alike if these are.
     let key = |fold: &Fold| ((fold.size() * 1e9).round() as u64, class(fold) as u8);
     let mut alike: BTreeMap<_, Vec<&Fold>> = BTreeMap::new();
     for fold in folds.iter().filter(|fold| fold.is_crease) {

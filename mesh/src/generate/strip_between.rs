@@ -19,20 +19,20 @@ pub struct RuledStrip {
     pub twist: f64,
 }
 
-/// The strip between two curves whose rulings are as nearly as possible those of a developable surface.
+/// The strip between two curves that is developable, or as nearly so as it can be.
 ///
 /// The curves go smoothly through their points (metres); both are closed if the last point of each is its
 /// first one. A ruling from `p1` to `p2` belongs to a developable surface if it lies in one plane with the
 /// tangents `t1` and `t2` there: `D = det(t1, t2, p2 - p1) = 0`, of unit vectors (Liu, Pottmann, Wallner,
 /// Yang and Wang, *Geometric modeling with conical meshes and developable surfaces*, ACM Trans. Graph. 25,
-/// 2006; Tang, Bo, Wallner and Pottmann, *Interactive design of developable surfaces*, ACM Trans. Graph. 35, 2016).
-/// Of all ways along both curves, from start to start to end to end and never back, that with the least sum
-/// of squares of the twist is found by dynamic programming, the angle between the planes of the ruling with
-/// both tangents; then each ruling is moved to the zero of `D` that is near, or where there is none to the
-/// least twist. An open curve that runs against the other one is reversed.
+/// 2006; Tang, Bo, Wallner and Pottmann, *Interactive design of developable surfaces*, ACM Trans. Graph. 35,
+/// 2016). The twist of a ruling is the angle between the planes that it spans with both tangents. Rulings run
+/// along both curves from start to end and never back. Dynamic programming finds the way with the least sum
+/// of squared sines of the twist. Then each ruling moves to the next zero of `D`, or to the least twist where
+/// there is none near. An open curve that runs against the other one is reversed.
 ///
 /// `columns` cells lie between the rulings, at equal parts of both lengths together, and `rows` of them
-/// across. The rest lengths are those in space.
+/// across. The rest lengths are the lengths in space.
 ///
 /// ```
 /// use isosheet_mesh::generate::strip_between;
@@ -46,9 +46,9 @@ pub struct RuledStrip {
 /// ```
 ///
 /// # Errors
-/// [`GenerateError`] for a curve with fewer than two points, with points in the same place, or next to one
-/// that is closed where it is not, for curves that meet, for counts below one (three columns of a closed
-/// strip), and for too many faces.
+/// [`GenerateError`] for a curve with fewer than two points or with points in the same place, for an open
+/// curve and a closed one, for curves that meet, for counts below one (three columns of a closed strip), and
+/// for too many faces.
 pub fn strip_between(
     first: &[[f64; 3]],
     second: &[[f64; 3]],
@@ -327,7 +327,7 @@ impl Pairs {
 }
 
 /// The squared sine of the angle between the planes that a ruling spans with the tangents at its ends. Where
-/// a tangent runs along the ruling it is that of the determinant of the three unit vectors.
+/// a tangent runs along the ruling it is the square of the determinant of the three unit vectors.
 fn squared_sine([p, u]: &[Vec3; 2], [q, v]: &[Vec3; 2]) -> f64 {
     let (u, v, ruling) = (unit(u), unit(v), unit(sub(q, p)));
     let [m, n] = [u, v].map(|t| cross(t, ruling));
