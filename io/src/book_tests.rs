@@ -52,7 +52,9 @@ fn words(line: &str) -> Vec<String> {
 #[test]
 fn the_commands_of_the_book_are_known() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let entries = fs::read_dir(root.join("docs")).expect("the folder of the book");
+    let entries = ["docs", "docs/scene"]
+        .into_iter()
+        .flat_map(|name| fs::read_dir(root.join(name)).expect("a folder of the book"));
     let paths = entries.map(|e| e.expect("an entry").path());
     let pages = paths.filter(|p| p.extension().is_some_and(|e| e == "md"));
     let mut known = 0;

@@ -31,8 +31,8 @@ pub struct BodyKey {
     /// A name, by which measures and pairs of friction find it; if left out, `body_0` and so on.
     #[serde(default)]
     pub name: Option<String>,
-    /// Its form: one that encloses a volume. Of a file the triangles have to be closed, with
-    /// counter-clockwise corners as seen from outside; it may have cavities.
+    /// Its form, which encloses a volume. The triangles of a file have to be closed, with counter-clockwise
+    /// corners as seen from outside; it may have cavities.
     pub shape: ShapeKey,
     /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out
     /// 32, and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with

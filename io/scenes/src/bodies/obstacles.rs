@@ -109,8 +109,8 @@ pub enum ShapeKey {
     },
     /// The triangles of a mesh file: a solid if they are closed, otherwise a surface with two sides.
     File(MeshFileKey),
-    /// A mesh in motion, which may deform: a surface with two sides. It is an obstacle alone, has no `motion`
-    /// besides its own, and passes through other obstacles.
+    /// A mesh in motion, which may deform: a surface with two sides. It is an obstacle alone, has no other
+    /// `motion`, and passes through other obstacles.
     Sequence(Sequence),
 }
 

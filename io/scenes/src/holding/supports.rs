@@ -17,7 +17,7 @@ use nalgebra::{Isometry3, Point3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Vertices that are held in the same way.
+/// Vertices that are held in one way.
 ///
 /// ```toml
 /// [[support]]
@@ -119,10 +119,10 @@ pub enum Hold {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Followed {
-    /// Of each vertex the one that is nearest at the start.
+    /// Each vertex follows the vertex that is nearest at the start.
     #[default]
     Nearest,
-    /// Of each vertex the one with the same number, as in the sheet that it belongs to.
+    /// Each vertex follows the vertex of its own number, as in the sheet that it belongs to.
     SameNumber,
     /// Vertices by their numbers, from 0: one for each vertex that is held, in the order of the numbers of
     /// these.

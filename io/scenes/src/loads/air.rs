@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Air at rest or in motion, which drags at each face of the sheet by the square of the relative velocity;
 /// without `[air]` there is none. With the velocity of the air relative to the face across it, `u_n`, and
 /// along it, `u_t`, the force on both sides of a face of area `A` together is
-/// `density A / 2 (normal |u_n| u_n + tangential |u_t| u_t)`, that of separated flow. There is lift, and a
-/// wake, where the flow is `attached` alone, and no face or obstacle shelters another.
+/// `density A / 2 (normal |u_n| u_n + tangential |u_t| u_t)`, as of separated flow. Only `attached` flow has
+/// lift and a wake. No face or obstacle shelters another.
 ///
 /// ```toml
 /// [air]

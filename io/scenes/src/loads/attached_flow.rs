@@ -30,8 +30,8 @@ pub struct AttachedFlowKey {
     pub sheet: Option<String>,
     /// Where the air leaves the sheet: the edges of its boundary whose two ends are selected.
     pub trailing: Selection,
-    /// The number of rows of vortices that the wake has, one for each step; what is behind them is one row
-    /// more. At least 2. If left out, 80.
+    /// The number of rows of vortices that the wake has, one for each step; one more row has all that is
+    /// behind them. At least 2. If left out, 80.
     #[serde(default = "rows")]
     pub rows: usize,
 }

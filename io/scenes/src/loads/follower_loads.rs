@@ -68,14 +68,14 @@ pub struct GasKey {
     /// Pressure outside, pascals. If left out, 101325, the standard atmosphere.
     #[serde(default = "atmosphere")]
     pub ambient: f64,
-    /// Pressure of the gas at the start, pascals. If left out, that outside.
+    /// Pressure of the gas at the start, pascals. If left out, the pressure outside.
     #[serde(default)]
     pub pressure: Option<f64>,
     /// Exponent `n`. If left out, 1: the temperature stays the same. Air that is compressed fast has 1.4.
     #[serde(default = "isothermal")]
     pub exponent: f64,
-    /// Gas that is let in, by the volume that it takes at the pressure at the start, cubic metres; what is
-    /// let out has a negative sign. It is added to `V1`.
+    /// Gas that is let in, by the volume that it takes at the pressure at the start, cubic metres; gas that
+    /// is let out has a negative sign. It is added to `V1`.
     #[serde(default)]
     #[unit(CubicMetre)]
     pub added: ProfileKey,

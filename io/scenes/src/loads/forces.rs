@@ -63,7 +63,7 @@ pub struct Load {
     pub sheet: Option<String>,
     /// Which vertices.
     pub at: Selection,
-    /// Direction in space, of any length; in the frame of the sheet that at the start.
+    /// Direction in space, of any length; in the frame of the sheet the direction at the start.
     pub direction: [f64; 3],
     /// What the direction turns with.
     #[serde(default)]
@@ -77,10 +77,10 @@ pub struct Load {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case")]
 pub enum Frame {
-    /// Nothing: it is fixed in space.
+    /// It stays fixed in space.
     #[default]
     Space,
-    /// The faces around each vertex: the direction is that at the start.
+    /// It turns with the faces around each vertex, and is given at the start.
     Sheet,
 }
 

@@ -69,8 +69,7 @@ pub enum Mesh {
         /// Number of rings of triangles.
         rings: usize,
     },
-    /// A circular sector in triangles about one vertex, that with the number 0: glued along its straight
-    /// sides it is a cone.
+    /// A circular sector in triangles about the vertex 0: glued along its straight sides it is a cone.
     Fan {
         /// Radius, metres.
         radius: f64,

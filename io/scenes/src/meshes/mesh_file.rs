@@ -33,7 +33,7 @@ pub struct MeshFileKey {
     /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A FOLD file with a unit of
-    /// length and a glTF file are in metres, and this is a factor besides.
+    /// length and a glTF file are in metres, and `scale` multiplies that unit.
     #[serde(default = "one")]
     pub scale: f64,
     /// The axis of the file that points upwards; it becomes z. To be left out for a glTF file, which has y

@@ -47,8 +47,8 @@ pub struct MiuraKey {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct DegreeFourKey {
-    /// Angles from crease 1 to 2 and from 2 to 3, degrees; the other two are what is left of 180 degrees of
-    /// each.
+    /// Angles from crease 1 to 2 and from 2 to 3, degrees; each of the other two adds up to 180 degrees with
+    /// the angle opposite.
     pub sectors: [f64; 2],
     /// Length of the creases, metres.
     pub radius: f64,

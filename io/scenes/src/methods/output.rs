@@ -21,7 +21,7 @@ pub struct Output {
     /// Frames per second of simulated time. A frame is taken after a whole number of steps, the nearest to
     /// this rate.
     pub frames_per_second: f64,
-    /// Time between two checkpoints, seconds of wall time: what is lost at most when the process is killed.
+    /// Time between two checkpoints, seconds of wall time: the most that is lost when the process is killed.
     /// With 0 there is a checkpoint after every step.
     pub checkpoint_interval: f64,
     /// Whether the frames are written as `trajectory.npz`.

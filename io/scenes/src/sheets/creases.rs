@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Torsion springs along some edges, with the same rest angle, which may be driven.
+/// Torsion springs along some edges. They have one rest angle, which may be driven.
 ///
 /// ```toml
 /// [[crease]]
@@ -41,8 +41,7 @@ pub struct Crease {
     /// Which edges.
     pub at: CreaseEdges,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre). It takes the place
-    /// of the bending stiffness of the sheet along the crease; springs `at = { pattern = "flat" }` act
-    /// besides it.
+    /// of the bending stiffness of the sheet along the crease; springs `at = { pattern = "flat" }` add to it.
     pub stiffness: f64,
     /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which faces
     /// are counter-clockwise, negative for a mountain.

@@ -24,8 +24,8 @@ use std::sync::Arc;
 /// a drawing with mountains and valleys.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
-/// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of
-/// them; those of an elastic sheet bend as its material does, where `sheet.refine` divides them finely
+/// to its target. A stiffer spring at each edge inside of a panel of rods keeps the panel flat, or makes it
+/// flat. Panels of an elastic sheet bend as its material does, where `sheet.refine` divides them finely
 /// enough. Angles that no such shape has are approached as far as the springs come to an equilibrium: the
 /// summary of the run says how large the differences are at the end.
 ///
@@ -67,8 +67,8 @@ pub struct Folding {
     /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
     pub part: f64,
-    /// The frame of the file that has the angles, by its number from 0 or by its title; if left out, the one
-    /// that is the mesh of the sheet. If its vertices are not in a plane, the creases are driven to the
+    /// The frame of the file that has the angles, by its number from 0 or by its title; if left out, the
+    /// frame that is the mesh of the sheet. If its vertices are not in a plane, the creases are driven to the
     /// angles that they have there, and otherwise to its `edges_foldAngle`.
     #[serde(default)]
     #[schemars(with = "Option<foreign::FoldFrame>")]

@@ -53,11 +53,11 @@ pub struct Plate {
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
     /// Of a material that is stiffer along the `direction` of the sheet than across, as laminates and wood
-    /// are: Young's modulus across it, Pa; `youngs` is that along it, and `poisson` the contraction across it
-    /// by a pull along it, of any sign.
+    /// are: Young's modulus across it, Pa; `youngs` is the modulus along it, and `poisson` the contraction
+    /// across it by a pull along it, of any sign.
     #[serde(default)]
     pub youngs_across: Option<f64>,
-    /// Of the same material the shear modulus, Pa.
+    /// Shear modulus of a material with a `direction`, Pa.
     #[serde(default)]
     pub shear: Option<f64>,
     /// Stress at which the material yields, Pa: steel has from 2e8. It makes the sheet yield where

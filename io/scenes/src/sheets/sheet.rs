@@ -140,7 +140,7 @@ pub enum IsometryKey {
         /// thickness, N/m.
         #[serde(default)]
         across: Option<f64>,
-        /// Of the same sheet the shear modulus times thickness, N/m.
+        /// Shear modulus times thickness of a sheet with a `direction`, N/m.
         #[serde(default)]
         shear: Option<f64>,
         /// Poisson's ratio, from 0 to 0.5. By default the value of the material; without a material 0.3. With

@@ -62,7 +62,8 @@ pub struct Poses {
 pub struct FramePose {
     /// Its origin, metres.
     pub position: [f64; 3],
-    /// Its orientation, a unit quaternion `w, x, y, z` that takes directions of the frame to those of space.
+    /// Its orientation, a unit quaternion `w, x, y, z` that takes directions of the frame to directions of
+    /// space.
     #[serde(default = "unturned")]
     pub orientation: [f64; 4],
 }
@@ -82,7 +83,8 @@ pub struct TimedPose {
     pub time: f64,
     /// Its origin, metres.
     pub position: [f64; 3],
-    /// Its orientation, a unit quaternion `w, x, y, z` that takes directions of the frame to those of space.
+    /// Its orientation, a unit quaternion `w, x, y, z` that takes directions of the frame to directions of
+    /// space.
     #[serde(default = "unturned")]
     pub orientation: [f64; 4],
 }
