@@ -29,17 +29,17 @@ In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` have
 **Know before use.** The numbers of metals and films are good to a few per cent for the thickness given, which
 is a common one. The numbers of paper, cloth and leather are typical: sorts differ by a factor of two, and the
 stiffness of paper falls with moisture. Bending tests give the rigidity of office paper, card, cloth and
-leather; it is no function of thickness, since fibres move against one another. The rigidity of the other
-papers is eight to nine tenths of the rigidity of a plate. The sources say which numbers are typical or
-assumed. The strain limit is not the strain at which a material yields or tears. It keeps strain invisible
-where a mesh is too coarse for its bends.
+leather: their fibres move against one another, so that it does not follow from the thickness. The rigidity of
+the other papers is eight to nine tenths of the rigidity of a plate. The sources say which numbers are typical
+or assumed. The strain limit keeps strain invisible where a mesh is too coarse for its bends. Materials yield
+or tear at other strains.
 
 **Directions.** Paper is about twice as stiff along the direction in which it was made as across, and woven
-cloth is many times softer in shear than along its yarns. A sheet has directions if it names one,
-`direction = [1, 0, 0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth. The
-second table has the numbers. Without the key a sheet is the same in all directions, with the numbers of the
-first table, and cloth wraps round bodies less easily than it should. Cloth with a direction may be strained
-by 20 %, a shear of 16 degrees, in place of 1 %. The page [How a sheet bends](bends.md) has the formulas, and
+cloth is many times softer in shear than along its yarns. A sheet has directions if it names one, `direction =
+[1, 0, 0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth. The second table
+has the numbers. Without the key a sheet is alike in all directions, with the numbers of the first table, and
+cloth wraps round bodies less easily than it should. The limit of the strain of cloth with a direction is 20
+%, a shear of 16 degrees, in place of 5 %. The page [How a sheet bends](bends.md) has the formulas, and
 materials of your own.
 
 **Yield.** A material with a moment `M_y` yields in bending if a scene sets `sheet.yield = {}`. Bends beyond
