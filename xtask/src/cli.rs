@@ -87,7 +87,7 @@ pub(crate) enum Command {
     /// that it prints and more cases for each: `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`
     /// repeats what failed.
     Soak(SoakArgs),
-    /// Write the pages of the book that are made of the code: scene.md, scene/*.md, materials.md and scene.schema.json
+    /// Write the pages that are made of the code: scene.md, scene/*.md, materials.md and scene.schema.json
     Reference(ReferenceArgs),
 }
 

@@ -1,5 +1,6 @@
-//! The pages about scene files in Markdown: every key with value, default and meaning, in the order of a scene
-//! file, and an example for each table.
+//! The pages about scene files in Markdown.
+//!
+//! Every key has its value, default and meaning, in the order of a scene file, and each table an example.
 
 use super::index;
 use super::introduction::INTRODUCTION;
@@ -68,7 +69,8 @@ fn tables(schema: &Value, places: &Places) -> String {
         } else {
             format!("`{name}`")
         };
-        let (default, text) = (default_of(schema, name), text_of(property));
+        let default = default_of(schema, name).replace("see there", "see its page");
+        let text = text_of(property);
         lines.push_str(&format!("| {shown} | {default} | {text} |\n"));
     }
     lines

@@ -13,9 +13,9 @@ use crate::words::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rigid body that responds: what touches it moves it, and gravity does. It meets sheets, obstacles and
-/// other bodies, whether `contact.self_contact` is set or not, by their friction: `obstacle.friction`, or
-/// otherwise `contact.friction`, or the friction of a `contact.pair` with its name.
+/// A rigid body that responds: contact and gravity move it. It meets sheets, obstacles and other bodies,
+/// whether `contact.self_contact` is set or not, by their friction: `obstacle.friction`, or otherwise
+/// `contact.friction`, or the friction of a `contact.pair` with its name.
 ///
 /// ```toml
 /// [[body]]

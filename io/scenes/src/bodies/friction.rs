@@ -38,10 +38,10 @@ pub enum FrictionKey {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionCoefficients {
-    /// The static coefficient, at least the kinetic one: up to it what touches rests.
+    /// The static coefficient, at least the kinetic one, up to which surfaces that touch rest.
     #[serde(rename = "static")]
     pub at_rest: f64,
-    /// The kinetic coefficient, of what slides.
+    /// The kinetic coefficient, of surfaces that slide.
     pub kinetic: f64,
 }
 

@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 #[schemars(rename = "Contact")]
 pub struct ContactSettings {
-    /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
+    /// Whether the sheet meets itself, and several sheets meet themselves and one another.
     pub self_contact: bool,
     /// Friction of sheets and bodies with themselves and one another. (That of an obstacle is given with the
     /// obstacle.)

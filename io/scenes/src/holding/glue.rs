@@ -42,8 +42,8 @@ pub struct GlueKey {
     pub sheets: Option<[String; 2]>,
     /// The vertices of one side.
     pub first: SeamSide,
-    /// The vertices of the other side, as many. Left out of a seam with a body, which holds the vertices of
-    /// the sheet where they are at the start: it carries them.
+    /// The vertices of the other side, as many as of the first. Leave it out for a seam with a body, which
+    /// carries the vertices of the sheet where they are at the start.
     #[serde(default)]
     pub second: Option<SeamSide>,
     /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.

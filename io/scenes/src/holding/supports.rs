@@ -74,8 +74,8 @@ pub enum Hold {
         vertices: Followed,
     },
     /// Clamped where they are at the start: the sheet keeps the slope that it has there, along the edges
-    /// between the vertices. Of a plate one line of vertices is enough; of other sheets the faces along the
-    /// line are pinned, which shortens the free part by their height.
+    /// between the vertices. A plate needs one line of vertices. In other sheets the faces along the line are
+    /// pinned, which shortens the free part by their height.
     Clamp,
     /// Clamped, in a prescribed motion, which is zero at the start: all vertices and the slopes move as one
     /// rigid body.

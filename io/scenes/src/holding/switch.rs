@@ -48,8 +48,8 @@ pub enum When {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, Part)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Condition {
-    /// Its own force has reached so many newtons: of a support the sum over its vertices, of a seam the force
-    /// of each pair, which tears for itself.
+    /// Its own force has reached so many newtons. The force of a support is the sum over its vertices. Each
+    /// pair of a seam has its own force, and tears for itself.
     Force(f64),
     /// A measure of the scene has passed a threshold.
     Measure(Threshold),

@@ -58,7 +58,7 @@ pub struct Measure {
     /// the vertices of its surface.
     #[serde(default)]
     pub sheet: Option<String>,
-    /// Which vertices. What is measured is their mean place. To be left out for a crease.
+    /// Which vertices. The run measures their mean place. Leave it out for a crease.
     #[serde(default)]
     pub at: Option<Selection>,
     /// The name of a `[[crease]]` whose angle or moment is measured.

@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A sheet in a drawing, as `isosheet mesh` makes it. Lines are selected by `"layer:NAME"`, by a colour,
-/// `"red"` or `"#ff8000"`, or by `"dashed"` and `"solid"`; what no list has goes by the words in the name of
-/// its layer, then by its colour as in Origami Simulator.
+/// `"red"` or `"#ff8000"`, or by `"dashed"` and `"solid"`; other lines go by the words in the name of their
+/// layer, then by their colour as in Origami Simulator.
 ///
 /// ```toml
 /// [sheet]
@@ -36,7 +36,7 @@ pub struct DrawingFile {
     /// diagonal of the drawing.
     #[serde(default)]
     pub snap: Option<f64>,
-    /// What a unit of the drawing means. If left out, what the file says.
+    /// The unit of the drawing. If left out, the unit that the file names.
     #[serde(default)]
     #[schemars(with = "Option<foreign::DrawingUnit>")]
     pub unit: Option<DrawingUnit>,

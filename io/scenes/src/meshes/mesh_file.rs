@@ -36,20 +36,20 @@ pub struct MeshFileKey {
     /// length and a glTF file are in metres, and `scale` multiplies that unit.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z. To be left out for a glTF file, which has y
+    /// The axis of the file that points upwards; it becomes z. Leave it out for a glTF file, which has y
     /// upwards by definition and is turned.
     #[serde(default)]
     pub up: UpAxis,
     /// What to do with faces of more than three corners.
     #[serde(default)]
     pub polygons: PolygonFaces,
-    /// Of a FOLD file: the frame whose vertices are taken, by its number from 0 or by its title; if left out,
+    /// The frame of a FOLD file whose vertices are taken, by its number from 0 or by its title; if left out,
     /// the first one with vertices. Frame 0 is the key frame of the file. One file can give the flat crease
     /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
     #[serde(default)]
     #[schemars(with = "Option<foreign::FoldFrame>")]
     pub frame: Option<FoldFrame>,
-    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each
+    /// The name of the mesh of a glTF file that is taken; if left out, all meshes that its scene shows, each
     /// where its nodes place it.
     #[serde(default)]
     pub mesh: Option<String>,

@@ -170,7 +170,7 @@ pub struct SquareTwist {
     pub side: f64,
     /// Side of the square in the middle, metres; its diagonal has to be shorter than the side of the sheet.
     pub square: f64,
-    /// By what the square in the middle is turned, degrees, more than 0 and less than 90.
+    /// The angle by which the square in the middle is turned, degrees, more than 0 and less than 90.
     pub angle: f64,
 }
 

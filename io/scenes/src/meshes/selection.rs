@@ -30,10 +30,9 @@ pub enum Selection {
     /// Faces by their numbers, from 0, and their vertices. The numbers are those after a refinement of the
     /// sheet, as in the frames of a run.
     Faces(Vec<usize>),
-    /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a
-    /// group, an object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a
-    /// node, a mesh or a material, of a FOLD file an entry of `faces_isosheet:group`. `isosheet info` lists
-    /// the groups of a file.
+    /// The faces of a group that the mesh file of the sheet names, and their vertices. OBJ files name groups,
+    /// objects and materials; PLY files integers of faces (`"label=3"`); glTF files nodes, meshes and
+    /// materials; FOLD files entries of `faces_isosheet:group`. `isosheet info` lists the groups of a file.
     Group(String),
     /// For each point (metres) the vertex nearest to it.
     Nearest(Vec<[f64; 3]>),

@@ -40,7 +40,7 @@ pub struct Sequence {
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z. To be left out for a file of glTF, which says
+    /// The axis of the file that points upwards; it becomes z. Leave it out for a file of glTF, which names
     /// it.
     #[serde(default)]
     pub up: UpAxis,
@@ -67,7 +67,7 @@ pub struct Sequence {
 pub struct MeshFrames {
     /// The times of the frames, seconds, in their order.
     pub times: Vec<f64>,
-    /// Of each frame the positions of all vertices, metres.
+    /// The positions of all vertices in each frame, metres.
     pub positions: Vec<Vec<[f64; 3]>>,
     /// Vertices of each triangle by their numbers, from 0.
     pub faces: Vec<[u32; 3]>,
@@ -117,7 +117,7 @@ pub enum Outside {
     /// Nothing: a run that needs it is refused.
     #[default]
     Refuse,
-    /// It rests where it is at that time: a mesh at one time alone throughout.
+    /// It rests where it is at that time. A mesh with a single time rests throughout.
     Rest,
 }
 

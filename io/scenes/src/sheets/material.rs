@@ -52,9 +52,9 @@ pub struct Plate {
     /// Poisson's ratio, from 0 to 0.5.
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
-    /// Of a material that is stiffer along the `direction` of the sheet than across, as laminates and wood
-    /// are: Young's modulus across it, Pa; `youngs` is the modulus along it, and `poisson` the contraction
-    /// across it by a pull along it, of any sign.
+    /// Young's modulus across the `direction` of the sheet, Pa, of a material that is stiffer along it, as
+    /// laminates and wood are; `youngs` is the modulus along it, and `poisson` the contraction across it by a
+    /// pull along it, of any sign.
     #[serde(default)]
     pub youngs_across: Option<f64>,
     /// Shear modulus of a material with a `direction`, Pa.

@@ -136,8 +136,8 @@ pub enum IsometryKey {
         /// Young's modulus times thickness, N/m: office paper has 3e5. By default the value of the material.
         #[serde(default)]
         stiffness: Option<f64>,
-        /// Of a sheet with a `direction`, along which `stiffness` is: Young's modulus across it times
-        /// thickness, N/m.
+        /// Young's modulus times thickness across the `direction` of the sheet, N/m; `stiffness` is then
+        /// along it.
         #[serde(default)]
         across: Option<f64>,
         /// Shear modulus times thickness of a sheet with a `direction`, N/m.
