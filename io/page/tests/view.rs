@@ -14,5 +14,6 @@ mod view {
     mod encoding;
     mod errors;
     mod keys;
+    mod parts;
     mod scenes;
 }

@@ -58,6 +58,7 @@ mod plan;
 mod recorder;
 mod recording;
 mod replay;
+mod round_off;
 mod row;
 mod rulings;
 mod series_body;

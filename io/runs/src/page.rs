@@ -4,6 +4,7 @@ use super::elastic::ElasticSummary;
 use super::frame_field::FrameField;
 use super::recording::{Recording, RunFrames};
 use super::replay::{measure_series, still, with_frames};
+use super::round_off::beyond;
 use super::spool::Spool;
 use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
 use isosheet_files::{DataError, prepare_folder, write_atomically};
@@ -262,12 +263,13 @@ impl Rows {
         }
         self.add(
             "energy that the method took out of the motion (-) or added (+)",
-            format!("{:.2e} J", ending.energy_drift),
+            format!("{:.2e} J", summary.drift_beyond_round_off()),
         );
         self.add(
             "largest speed at the end",
-            format!("{:.2e} m/s", ending.largest_speed),
+            format!("{:.2e} m/s", summary.speed_beyond_round_off()),
         );
+        let vector = |force| vector(force, summary.round_off_of_forces());
         for (k, force) in ending.supports.iter().enumerate() {
             let name = format!("force of support[{k}] on the sheet at the end");
             self.add(&name, vector(force));
@@ -283,8 +285,9 @@ impl Rows {
     }
 }
 
-/// A force in words.
-fn vector([x, y, z]: &[f64; 3]) -> String {
+/// A force in words, whose components are 0 up to a size.
+fn vector(force: &[f64; 3], round_off: f64) -> String {
+    let [x, y, z] = force.map(|c| beyond(c, round_off));
     format!("({x:.3e}, {y:.3e}, {z:.3e}) N")
 }
 

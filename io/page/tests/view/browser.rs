@@ -26,6 +26,7 @@ fn check_pictures(result: &Value) {
     }
     let covered = number(&result["covered"]);
     assert!(covered > 0.01, "the emptiest picture covers {covered}");
+    assert_eq!(number(&result["opened"]["outside"]), 0.0, "all is in view");
     let pictures = &result["pictures"];
     assert_eq!(number(&pictures["views"]), 4.0, "four directions of view");
     let modes = result["modes"].as_array().unwrap().len();
@@ -109,6 +110,30 @@ fn a_sheet_that_falls_far_is_followed() {
     }
     let covered = number(&result["covered"]);
     assert!(covered > 0.01, "the emptiest picture covers {covered}");
+    let opened = &result["opened"];
+    assert_eq!(number(&opened["outside"]), 0.0, "all is in view");
+    assert_eq!(number(&opened["frame"]), 19.0, "it has fallen farthest");
+}
+
+/// A sheet that swells and turns over is in view in every frame, in windows of any shape.
+#[test]
+fn all_frames_are_in_view_in_windows_of_any_shape() {
+    let mut replay = waving(2, 21);
+    for (k, x) in replay.positions.iter_mut().enumerate() {
+        let (s, c) = (k as f64 * 0.15).sin_cos();
+        for p in x.chunks_exact_mut(3) {
+            [p[0], p[2]] = [c * p[0] - s * p[2], s * p[0] + c * p[2]].map(|q| q * (1.0 + s));
+        }
+    }
+    let page = replay.to_html().unwrap();
+    for window in ["900,650", "390,800", "1600,400"] {
+        let Some(result) = self_test(&page, window) else {
+            return;
+        };
+        assert_eq!(number(&result["opened"]["outside"]), 0.0, "in {window}");
+        let covered = number(&result["coveredAtStart"]);
+        assert!(covered > 0.01, "covers {covered} of {window}");
+    }
 }
 
 #[test]

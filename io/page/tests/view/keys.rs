@@ -62,9 +62,24 @@ fn space_and_arrows_work_after_any_control_was_used() {
     }
 }
 
-/// Controls that are reached by the tabulator keep their keys, for people without a pointer.
+/// Space plays from the first moment on, from the start of a motion that the page opens in the midst of.
 #[test]
-fn controls_that_are_reached_by_the_tabulator_keep_their_keys() {
+fn space_plays_before_anything_was_clicked() {
+    let Some(mut page) = Driven::open(&waving(2, 600).to_html().unwrap()) else {
+        return;
+    };
+    let opened = page.value(FRAME).as_f64().unwrap();
+    assert!(opened > 0.0, "nothing has moved in the first frame");
+    page.press(" ");
+    assert_eq!(page.value(PLAYS), json!(true));
+    page.wait_for(&format!("{FRAME} < {opened}"));
+    page.press(" ");
+    assert_eq!(page.value(PLAYS), json!(false));
+}
+
+/// Controls that are reached by the tabulator are used by Enter, for people without a pointer, and space plays.
+#[test]
+fn space_plays_wherever_the_focus_is() {
     let Some(mut page) = Driven::open(&waving(2, 12).to_html().unwrap()) else {
         return;
     };
@@ -72,14 +87,21 @@ fn controls_that_are_reached_by_the_tabulator_keep_their_keys() {
     page.press("Tab");
     let focused = "document.activeElement.id";
     assert_eq!(page.value(focused), json!("edges"));
-    page.press(" ");
     let edges = "document.getElementById('edges').checked";
+    page.press("Enter");
     assert_eq!(page.value(edges), json!(false));
     assert_eq!(page.value(focused), json!("edges"));
+    page.press("Home");
     page.press("ArrowRight");
     assert_eq!(page.value(FRAME), json!(1), "a box has no use for arrows");
-    page.press(" ");
-    assert_eq!(page.value(edges), json!(true));
+    for control in ["edges", "colour", "fit", "speed", "view", "scrub"] {
+        page.value(&format!("document.getElementById('{control}').focus()"));
+        page.press(" ");
+        assert_eq!(page.value(PLAYS), json!(true), "space plays at {control}");
+        page.press(" ");
+        assert_eq!(page.value(PLAYS), json!(false), "space stops at {control}");
+    }
+    assert_eq!(page.value(edges), json!(false), "space leaves boxes alone");
 }
 
 #[test]
@@ -89,6 +111,8 @@ fn the_address_says_what_is_shown_and_shows_it_again() {
     };
     let colour = "document.getElementById('colour').value";
     assert_eq!(page.value("location.hash"), json!(""));
+    let opened = page.value(FRAME);
+    page.press("Home");
     page.press("ArrowRight");
     page.press("ArrowRight");
     page.wait_for("location.hash === '#frame=2'");
@@ -116,5 +140,5 @@ fn the_address_says_what_is_shown_and_shows_it_again() {
     page.wait_for("location.hash === '#frame=6'");
     // Nonsense is no reason to show nothing.
     page.go("#frame=many&colour=none&camera=1,2,x&bodies=no");
-    assert_eq!(page.value(FRAME), json!(0));
+    assert_eq!(page.value(FRAME), opened);
 }

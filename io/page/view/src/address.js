@@ -13,7 +13,6 @@ export class Address {
   constructor(page) {
     this.page = page;
     window.addEventListener("hashchange", () => this.read());
-    this.start = page.stage.cameraText();
   }
 
   /** Shows what the address names, and all else as it is at the start. */
@@ -27,7 +26,9 @@ export class Address {
       page.stage.lookFrom(choices.get("camera").split(",").map(Number));
       page.player.isTouched = true;
     }
-    page.player.seek(Number(choices.get("frame")) || 0);
+    const frame = choices.has("frame") ? Number(choices.get("frame")) : NaN;
+    if (Number.isNaN(frame)) page.player.open(page.replay.startFrame);
+    else page.player.seek(frame);
     for (const [id, start] of Object.entries(BOXES)) {
       const isOn = choices.has(id) ? choices.get(id) === "1" : start;
       if ($(id).checked !== isOn) $(id).click();
@@ -41,13 +42,12 @@ export class Address {
   }
 
   write() {
-    const { replay, stage } = this.page,
-      camera = stage.cameraText();
+    const { replay, stage } = this.page;
     const entries = [
-      ["frame", replay.frame, 0],
+      ["frame", replay.frame, replay.startFrame],
       ["colour", $("colour").value, replay.startColour],
       ["bodies", $("bodies").value, $("bodies").options[0].value],
-      ["camera", camera, this.start],
+      ["camera", stage.isAtStart ? "" : stage.cameraText(), ""],
       ...Object.entries(BOXES).map(([id, start]) => [id, Number($(id).checked), Number(start)]),
     ];
     const named = entries.filter(([, value, start]) => value !== start);

@@ -1,6 +1,6 @@
 // What is under the pointer, as a text beside it.
 
-import { number, withUnit } from "./format.js";
+import { clean, number, withUnit } from "./format.js";
 
 function held({ pins, immobile }, vertex) {
   if (pins.includes(vertex)) return ", pinned";
@@ -13,18 +13,18 @@ export function describe(replay, found) {
   const { face, vertex, edge } = found;
   const { edges } = replay.mesh,
     x = replay.x;
-  const position = [0, 1, 2].map((k) => number(x[3 * vertex + k])).join(", ");
+  const position = [0, 1, 2].map((k) => number(clean(x[3 * vertex + k], replay.data.step / 2))).join(", ");
   const fold = replay.fold(edge) * (180 / Math.PI);
   const lines = [
     `Vertex ${vertex} at (${position}) m${held(replay.data, vertex)}`,
     `Edge ${edge}, vertices ${edges[2 * edge]} and ${edges[2 * edge + 1]}`,
-    Number.isNaN(fold) ? "No fold angle: boundary" : `Fold angle ${number(fold)}°`,
+    Number.isNaN(fold) ? "No fold angle: boundary" : `Fold angle ${number(clean(fold, replay.foldFloor))}°`,
     `Face ${face}`,
   ];
   for (const quantity of replay.quantities) {
     if (quantity.key.startsWith("field-")) {
       const index = { vertex, edge, face }[quantity.place];
-      lines.push(`${quantity.label} (${quantity.place}): ${withUnit(quantity.value(index), quantity.unit)}`);
+      lines.push(`${quantity.label} (${quantity.place}): ${withUnit(quantity.value(index), quantity.unit, { floor: quantity.floor() })}`);
       if (quantity.note) lines.push(quantity.note);
     }
   }

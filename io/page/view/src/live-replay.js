@@ -20,6 +20,10 @@ export class LiveReplay extends Replay {
     return this.now ?? this.data.times[0];
   }
 
+  get startFrame() {
+    return 0;
+  }
+
   get foldRange() {
     const end = FOLD_ENDS.find((e) => this.seen.fold <= e) ?? 180;
     return { range: [-end, end], open: false };

@@ -184,7 +184,7 @@ export class Live {
   }
 
   timeText() {
-    return `${number(this.page.replay.time, 4)} s`;
+    return withUnit(this.page.replay.time, "s");
   }
 
   toggle() {
@@ -198,6 +198,7 @@ export class Live {
   }
 
   // The present state is the only one.
+  open() {}
   seek() {}
   seekTime() {}
 }

@@ -4,9 +4,8 @@ import "uplot/dist/uPlot.min.css";
 import "./view.css";
 import { Address } from "./address.js";
 import { decode } from "./decode.js";
-import { number } from "./format.js";
 import { Hover } from "./hover.js";
-import { listenToKeys, releaseControls } from "./keys.js";
+import { listenToKeys, releaseControls, waitForSpace } from "./keys.js";
 import { showLegend } from "./legend.js";
 import { Live } from "./live.js";
 import { LiveReplay } from "./live-replay.js";
@@ -132,11 +131,13 @@ class Page {
 
 async function main() {
   const isTest = new URLSearchParams(location.hash.slice(1)).has("selftest");
-  const exceptions = watchErrors();
+  const exceptions = watchErrors(),
+    endWaiting = waitForSpace();
   const data = await decode(JSON.parse($("replay").textContent));
   const page = new Page(data.live ? new LiveReplay(data) : new Replay(data));
   $("message").hidden = true;
   page.address.read();
+  if (endWaiting() % 2 === 1) page.player.toggle();
   if (isTest)
     document.body.dataset.selftest = JSON.stringify(await selfTest(page, exceptions));
 }

@@ -8,9 +8,17 @@ export class Player {
     this.speed = 1;
     this.loops = false;
     this.playing = false;
+    this.isOpening = false;
+  }
+
+  /** Shows the frame that the page opens at, from where playing begins at the start. */
+  open(frame) {
+    this.seek(frame);
+    this.isOpening = true;
   }
 
   seek(frame) {
+    this.isOpening = false;
     const last = this.replay.frames - 1;
     this.show(Math.min(Math.max(Math.round(frame), 0), last));
     this.time = this.replay.time;
@@ -30,7 +38,9 @@ export class Player {
     this.playing = !this.playing && this.replay.frames > 1;
     if (this.playing) {
       const { times } = this.replay.data;
-      this.time = this.replay.frame === this.replay.frames - 1 ? times[0] : this.replay.time;
+      const isOver = this.isOpening || this.replay.frame === this.replay.frames - 1;
+      this.time = isOver ? times[0] : this.replay.time;
+      this.isOpening = false;
       this.clock = null;
       requestAnimationFrame((now) => this.tick(now));
     }

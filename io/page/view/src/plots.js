@@ -1,7 +1,8 @@
 // Plots of the series over time, with a line at the time of the frame.
 
 import uPlot from "uplot";
-import { number } from "./format.js";
+import { Against, pressuresAndVolumes } from "./against.js";
+import { clean, largestOf, number, roundOff, suitedUnit, withUnit } from "./format.js";
 import { themeColours } from "./theme.js";
 
 const HEIGHT = 132;
@@ -13,6 +14,34 @@ const REFRESH = 250;
 const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 const sameTimes = (a, b) => a.length === b.length && a.every((t, k) => t === b[k]);
+
+/** A tick of an axis is zero where it is this share of the largest one. */
+const ZERO_TICK = 1e-9;
+
+/**
+ * The sizes up to which the values of a series are round-off. Energies are compared with all energies, since they
+ * become one another, and numbers without a unit with one.
+ */
+export function floorOf(series, all) {
+  const alike = series.unit === "J" ? all.filter((s) => s.unit === "J") : [series];
+  const largest = Math.max(...alike.map((s) => largestOf(s.values)));
+  return roundOff(series.unit === "" ? Math.max(largest, 1) : largest);
+}
+
+/** Ticks of an axis as texts. */
+function tickTexts(ticks, digits) {
+  const largest = largestOf(ticks);
+  // Ticks that are close to each other need more digits to be told apart.
+  const apart = ticks.length > 1 ? Math.log10(largest / Math.abs(ticks[1] - ticks[0])) : 0;
+  const enough = Math.min(Math.max(digits, Math.ceil(apart - 1e-9) + 1), 9);
+  return ticks.map((tick) => number(clean(tick, ZERO_TICK * largest), enough));
+}
+
+/** Times at the ticks of an axis as texts, all in one unit. */
+function timeTexts(ticks) {
+  const size = largestOf(ticks);
+  return ticks.map((t) => withUnit(t, "s", { size, floor: ZERO_TICK * size }));
+}
 
 /** Series that follow each other with the same unit, scale and times share a plot. */
 export function groupSeries(series) {
@@ -39,13 +68,17 @@ export class Plots {
     this.groups = groupSeries(series);
     this.onTime = onTime;
     this.time = 0;
+    this.nearest = nearest;
     this.build();
     new ResizeObserver(() => this.resize()).observe(container);
   }
 
   build() {
     this.container.replaceChildren();
-    this.plots = this.groups.map((group) => new Plot(this, group, themeColours()));
+    this.plots = [
+      ...pressuresAndVolumes(this.groups.flat()).map((pair) => new Against(this, pair)),
+      ...this.groups.map((group) => new Plot(this, group, themeColours())),
+    ];
   }
 
   resize() {
@@ -78,7 +111,7 @@ export class Plots {
 
   setTime(time) {
     this.time = time;
-    for (const plot of this.plots) plot.setTime(time);
+    for (const plot of this.plots) plot.setTime(time, nearest);
   }
 }
 
@@ -91,13 +124,12 @@ class Plot {
     this.labels = group.map((series, k) => {
       const name = document.createElement("span"),
         value = document.createElement("output");
-      name.textContent = series.name + (series.unit ? ` (${series.unit})` : "");
       name.style.setProperty("--key", LINES[k]);
       name.className = group.length > 1 ? "key" : "";
       const entry = document.createElement("span");
       entry.append(name, " ", value);
       this.caption.append(entry, " ");
-      return value;
+      return { name, value };
     });
     figure.append(this.caption);
     plots.container.append(figure);
@@ -116,8 +148,18 @@ class Plot {
   }
 
   readValues() {
-    const shown = (v) => (this.logarithmic && v <= 0 ? null : v);
-    this.values = this.group.map((s) => Array.from(s.values, shown));
+    const suited = suitedUnit(this.group[0].unit, Math.max(...this.group.map((s) => largestOf(s.values))));
+    const all = this.plots.groups.flat();
+    this.values = this.group.map((s) => {
+      const floor = floorOf(s, all);
+      return Array.from(s.values, (v) => {
+        const shown = clean(v, floor) * suited.factor;
+        return this.logarithmic && shown <= 0 ? null : shown;
+      });
+    });
+    this.group.forEach(({ name }, k) => {
+      this.labels[k].name.textContent = name + (suited.unit ? ` (${suited.unit})` : "");
+    });
   }
 
   /** Takes over values that have been added; false if there is no plot for them yet. */
@@ -147,7 +189,7 @@ class Plot {
         y: logarithmic ? { distr: 3 } : {},
       },
       axes: [
-        { ...axis, size: 24, space: 60, values: (_, ticks) => ticks.map((t) => `${number(t)} s`) },
+        { ...axis, size: 24, space: 60, values: (_, ticks) => timeTexts(ticks) },
         {
           ...axis,
           size: 58,
@@ -155,7 +197,7 @@ class Plot {
           gap: 4,
           splits: logarithmic ? (_, __, low, high) => decades(low, high) : undefined,
           filter: logarithmic ? (_, ticks) => ticks : undefined,
-          values: (_, ticks) => ticks.map((v) => number(v, 3)),
+          values: (_, ticks) => tickTexts(ticks, 3),
         },
       ],
       series: [
@@ -195,9 +237,9 @@ class Plot {
     this.line.style.transform = `translateX(${left}px)`;
     this.line.hidden = left < 0 || left > this.plot.over.clientWidth;
     const k = nearest(times, time);
-    this.group.forEach((series, i) => {
-      const leftOut = this.values[i][k] === null;
-      this.labels[i].textContent = leftOut ? "\u2013" : number(series.values[k]);
+    this.labels.forEach(({ value }, i) => {
+      const shown = this.values[i][k] ?? null;
+      value.textContent = shown === null ? "\u2013" : number(shown);
     });
   }
 

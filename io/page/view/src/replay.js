@@ -1,7 +1,8 @@
 // The decoded replay: positions and values of a frame, and the quantities that the sheet can be coloured by.
 
-import { number } from "./format.js";
+import { roundOff, withUnit } from "./format.js";
 import { DARK, DIVERGING, SEQUENTIAL } from "./colour.js";
+import { frameOfMotion } from "./framing.js";
 import { Mesh } from "./mesh.js";
 
 const AXES = { x: 0, y: 1, z: 2 };
@@ -77,10 +78,28 @@ export class Replay {
     return colour === undefined ? this.quantities[0].key : `field-${colour}`;
   }
 
+  /** The frame that the page opens at: one in which something has happened. */
+  get startFrame() {
+    return (this.foundStart ??= frameOfMotion(this));
+  }
+
+  /** The time of the frame, in the unit that suits the whole motion. */
+  get timeText() {
+    const { times } = this.data,
+      size = Math.max(Math.abs(times[0]), Math.abs(times[times.length - 1]));
+    return withUnit(this.time, "s", { size, floor: roundOff(size) });
+  }
+
+  /** The fold angle that positions in steps may have in a flat sheet, degrees. */
+  get foldFloor() {
+    const { step, rest } = this.data;
+    return (this.foundFloor ??= ((4 * step) / this.mesh.meanLength(rest)) * DEGREES);
+  }
+
   /** What is said of the frame: of a crease pattern how far it is folded, of other runs the time. */
   get frameText() {
     const { folded } = this.data;
-    const at = folded ? `${(100 * folded[this.frame]).toFixed(0)} % of the fold` : `${number(this.time)} s`;
+    const at = folded ? `${(100 * folded[this.frame]).toFixed(0)} % of the fold` : this.timeText;
     return `${at} · ${this.frame + 1}/${this.frames}`;
   }
 
@@ -144,7 +163,7 @@ export class Replay {
 // place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. A quantity
 // `ofCreases` is of some edges, and is shown on the two colours of the sheet. Ranges are those
 // of the whole run, so that colours mean the same in every frame; `open` says beyond which ends there are
-// values.
+// values. Values up to the `floor` are round-off.
 
 /** Creases whose value differs from zero by less than this share of the range of colours show nothing. */
 const FLAT = 0.01;
@@ -162,6 +181,7 @@ function foldQuantity(replay) {
     open: () => ({ below: replay.foldRange.open, above: replay.foldRange.open }),
     leavesOut: farFrom(0.5),
     range: () => replay.foldRange.range,
+    floor: () => replay.foldFloor,
     value: (edge) => replay.fold(edge) * DEGREES,
   };
 }
@@ -240,6 +260,7 @@ function heightQuantity(replay) {
     map: SEQUENTIAL,
     scale: "linear",
     range: () => replay.heightRange,
+    floor: () => replay.data.step / 2,
     value: (vertex) => replay.x[3 * vertex + replay.up],
   };
 }
@@ -261,6 +282,7 @@ function fieldQuantity(replay, field, k) {
     map: field.place === "crease" ? DARK : SEQUENTIAL,
     scale: field.scale,
     range: () => [field.place === "crease" ? 0 : decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
+    floor: () => Math.max(roundOff(Math.max(Math.abs(decode(0)), Math.abs(decode(largest)))), logarithmic ? 0 : step / 2),
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }
@@ -300,6 +322,7 @@ function forceQuantity(replay, field, k) {
     scale: "linear",
     open: () => ({ below: hasSigns && end().open, above: end().open }),
     range: () => [hasSigns ? -end().size : 0, end().size],
+    floor: () => roundOff(end().largest),
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }
@@ -316,7 +339,7 @@ function usualSize(values, size) {
   const count = values.length - histogram[0];
   let last = 0;
   for (let within = 0; within < FORCES_IN_RANGE * count;) within += histogram[++last];
-  return { size: size(last), open: largest > last };
+  return { size: size(last), largest: size(largest), open: largest > last };
 }
 
 /** The function from values to places in [0, 1]; zeros of a logarithmic scale are at its low end. */

@@ -100,12 +100,31 @@ function numbers(replay) {
   };
 }
 
+/** How many vertices are outside of the view at the start, in frames from the first to the last one. */
+function outOfView(page) {
+  const { stage, player, replay } = page,
+    parts = Math.min(replay.frames - 1, 40);
+  let outside = 0;
+  for (let part = 0; part <= parts; part++) {
+    player.seek(parts === 0 ? 0 : Math.round((part * (replay.frames - 1)) / parts));
+    stage.camera.updateMatrixWorld();
+    const { clientWidth, clientHeight } = stage.container;
+    for (let v = 0; v < replay.data.vertices; v++) {
+      const [x, y] = stage.placeOf(stage.vertexPlace(v));
+      if (!(x >= 0 && y >= 0 && x <= clientWidth && y <= clientHeight)) outside++;
+    }
+  }
+  return outside;
+}
+
 export async function selfTest(page, exceptions) {
   // Plots take their places after the code that makes them has ended.
   await new Promise((resolve) => setTimeout(resolve));
   const { replay, stage, player } = page,
     last = replay.frames - 1,
     log = [];
+  const opened = { frame: replay.frame, outside: outOfView(page) };
+  stage.resetCamera();
   const startColour = document.getElementById("colour").value;
   const seeks = [0, 0.25, 0.5, 0.75, 1].map((part) => Math.round(part * last));
   const frames = distinct(
@@ -175,6 +194,7 @@ export async function selfTest(page, exceptions) {
     clicked,
     played,
     slid,
+    opened,
     startColour,
     title: document.getElementById("title").textContent,
     scene: document.getElementById("scene").textContent,

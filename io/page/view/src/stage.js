@@ -17,6 +17,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { addPatch, makeBody, placeBody } from "./bodies.js";
+import { bestSide, boxAboutMiddle, distanceToFit } from "./framing.js";
 import { Ground } from "./ground.js";
 import { SheetObjects } from "./sheet.js";
 import { themeColours } from "./theme.js";
@@ -25,9 +26,7 @@ import { themeColours } from "./theme.js";
 const ANGLE_OF_VIEW = 32;
 /** How much of the radius of what is framed the half-spaces reach beyond it. */
 const PATCH_REACH = 1.2;
-/** The share of the coordinates in all frames that says where the sheet usually is. */
-const USUAL = 0.9;
-/** How much longer what is framed may become by this. */
+/** How much longer than the sheet what is framed may be, by its motion and by bodies. */
 const LARGEST_FRAME = 2.5;
 /** By how much the camera is farther away than it has to be. */
 const MARGIN = 1.15;
@@ -37,9 +36,6 @@ const NEAREST = 0.05;
 const SUN_DISTANCE = 5;
 const SHADOW_REACH = 1.8;
 const SHADOW_PIXELS = 2048;
-/** Where the camera looks from, in axes (right, depth, up). */
-const DIRECTION = [0.55, -1, 0.5];
-
 /** How bodies can be shown. */
 export const LOOKS = ["solid", "glass", "hidden"];
 /** What a see-through body covers of what is behind it. */
@@ -58,6 +54,7 @@ export class Stage {
     this.camera.up.copy(this.up);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.request());
+    this.controls.addEventListener("start", () => (this.isAtStart = false));
     this.colours = themeColours();
     this.look = LOOKS[0];
     this.addLights();
@@ -107,31 +104,27 @@ export class Stage {
   }
 
   /**
-   * Frames the rest shape, the first frame, the bodies and all other frames, or where the sheet usually is, unless
-   * this is so far away that everything else would be small. Where the sheet leaves what is framed, the camera follows
-   * it. Half-spaces reach beyond what is framed.
+   * Frames the sheet in all frames, and the bodies unless they are much larger. Where the sheet goes far away, the
+   * camera follows it, and what is framed is the sheet about its middle. Half-spaces reach beyond what is framed.
    */
   chooseUnits() {
     const { rest } = this.replay.data;
-    const box = new Box3(),
-      point = new Vector3();
-    for (const x of [rest, this.replay.x]) {
-      for (let k = 0; k < x.length; k += 3) box.expandByPoint(point.set(x[k], x[k + 1], x[k + 2]));
-    }
-    this.bodies.updateMatrixWorld(true);
-    for (const group of this.bodyGroups) if (group.children.length > 0) box.expandByObject(group);
-    const length = (b) => b.getSize(point).length();
-    const wider = [1, USUAL].map((share) => {
-      const wide = box.clone(),
-        range = this.replay.usualRange(share);
-      for (const end of [0, 1]) wide.expandByPoint(point.set(...range.map((ends) => ends[end])));
-      return wide;
-    });
-    const fitting = wider.find((wide) => length(wide) <= LARGEST_FRAME * length(box));
-    if (fitting) box.copy(fitting);
+    const point = new Vector3(),
+      length = (b) => b.getSize(point).length();
+    const still = new Box3().setFromArray(this.replay.x);
+    const range = this.replay.usualRange(1);
+    const box = new Box3(...[0, 1].map((end) => new Vector3(...range.map((ends) => ends[end])))).union(still);
     // How far the camera has moved along with a sheet that leaves its view.
     this.shift = new Vector3();
-    this.follows = !this.replay.middles().every((middle) => box.containsPoint(point.set(...middle)));
+    const middles = this.replay.middles();
+    const about = new Box3(...boxAboutMiddle(this.replay, middles).map((corner) => new Vector3(...corner)));
+    this.bodies.updateMatrixWorld(true);
+    const bodies = new Box3();
+    for (const group of this.bodyGroups) if (group.children.length > 0) bodies.expandByObject(group);
+    this.follows = length(box) > LARGEST_FRAME * length(about.clone().union(still).union(bodies));
+    if (this.follows) box.copy(about).union(still);
+    const all = box.clone().union(bodies);
+    if (length(all) <= LARGEST_FRAME * length(box)) box.copy(all);
     this.centre = box.getCenter(new Vector3()).toArray();
     this.size = box.getSize(point).length() / 2 || 1;
     const half = point.divideScalar(2 * this.size);
@@ -238,15 +231,24 @@ export class Stage {
     this.request();
   }
 
-  /** The camera at its start: rest shape, first frame and bodies fill the view. */
+  /** The camera at its start: all frames and bodies are in the view, from the side that shows most of the sheet. */
   resetCamera() {
-    const [right, depth, up] = DIRECTION;
-    const [a, b] = [(this.replay.up + 1) % 3, (this.replay.up + 2) % 3];
-    const direction = new Vector3()
-      .setComponent(a, right)
-      .setComponent(b, depth)
-      .setComponent(this.replay.up, up);
-    this.frameBox(this.box.clone().translate(this.shift), direction);
+    this.frameBox(this.box.clone().translate(this.shift), this.side());
+    this.isAtStart = true;
+  }
+
+  /** From where the camera looks at the start. */
+  side() {
+    const upright = (turn) => new Vector3(0, 0, 1).applyQuaternion(turn).toArray();
+    this.bestSide ??= new Vector3(
+      ...bestSide(
+        this.replay,
+        this.bodyGroups
+          .filter((_, k) => this.replay.data.bodies[k].shape.kind === "half_space")
+          .map((group) => upright(group.quaternion)),
+      ),
+    );
+    return this.bestSide;
   }
 
   /** Where the camera is and what it looks at, in metres: six numbers with commas. Without what it has followed. */
@@ -266,6 +268,7 @@ export class Stage {
     );
     const isPlace = metres.length === 6 && metres.every(Number.isFinite);
     if (!isPlace || position.distanceTo(target) < NEAREST) return;
+    this.isAtStart = false;
     this.controls.target.copy(target);
     this.camera.position.copy(position);
     this.controls.update();
@@ -286,12 +289,9 @@ export class Stage {
     const slope = Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
     const centre = box.getCenter(new Vector3()),
       half = box.getSize(new Vector3()).divideScalar(2).toArray();
-    let distance = NEAREST;
-    for (let k = 0; k < 8; k++) {
-      const corner = new Vector3(...half.map((side, axis) => (k & (1 << axis) ? side : -side)));
-      const aside = Math.max(Math.abs(corner.dot(upward)), Math.abs(corner.dot(across)) / this.camera.aspect);
-      distance = Math.max(distance, MARGIN * (corner.dot(toCamera) + aside / slope));
-    }
+    const axes = { toCamera: toCamera.toArray(), across: across.toArray(), upward: upward.toArray() };
+    const distance = Math.max(NEAREST, MARGIN * distanceToFit(half, axes, slope, this.camera.aspect));
+    this.isAtStart = false;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(toCamera, distance);
     this.controls.update();
@@ -304,6 +304,8 @@ export class Stage {
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
+    // What was framed for another shape of the view would be cut off in this one.
+    if (this.isAtStart) this.resetCamera();
     this.render();
   }
 
@@ -353,11 +355,16 @@ export class Stage {
     let nearest = null,
       least = reach;
     for (const v of candidates) {
-      const [x, y] = this.placeOf(new Vector3().fromArray(this.positions, 3 * v));
+      const [x, y] = this.placeOf(this.vertexPlace(v));
       const distance = Math.hypot(x - left, y - top);
       if (distance <= least) [nearest, least] = [v, distance];
     }
     return nearest;
+  }
+
+  /** The place of a vertex on the stage. */
+  vertexPlace(vertex) {
+    return new Vector3().fromArray(this.positions, 3 * vertex);
   }
 
   /** Where a point of the stage is seen: pixels from the upper left corner, and its depth. */

@@ -10,6 +10,11 @@ function section(id, text) {
   $(`${id}-section`).hidden = text === "";
 }
 
+/** A text of the program, whose numbers with exponents are written as people write them. */
+export function readable(text) {
+  return text.replace(/-?\d+(\.\d+)?e[-+]?\d+/g, (found) => number(Number(found)));
+}
+
 export function showTexts(replay) {
   const { data, mesh } = replay;
   $("title").textContent = data.title || "Run";
@@ -25,7 +30,7 @@ export function showTexts(replay) {
   const rows = data.summary.map(([name, value]) => {
     const row = document.createElement("tr");
     const head = Object.assign(document.createElement("th"), { textContent: name, scope: "row" });
-    row.append(head, Object.assign(document.createElement("td"), { textContent: value }));
+    row.append(head, Object.assign(document.createElement("td"), { textContent: readable(value) }));
     return row;
   });
   $("summary").replaceChildren(...rows);
@@ -35,7 +40,7 @@ export function showTexts(replay) {
   $("footer").replaceChildren(
     ...[
       `${data.program} ${data.version}.`,
-      data.live ? "" : `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
+      data.live ? "" : `Positions are rounded to ${withUnit(data.step / 2, "m", { digits: 2 })} in each coordinate.`,
       data.stride > 1
         ? `Has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
         : "",
