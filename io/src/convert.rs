@@ -3,6 +3,7 @@
 use super::failure::{Code, Done, Failure};
 use super::frames::{ColourRange, FrameRange, Size, View};
 use super::info::is_scene;
+use super::layers;
 use super::message::counted;
 use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
@@ -45,6 +46,7 @@ Files that are written of a run:
   .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
           numbered pictures in a folder of that name
   .apng   shaded pictures of all frames as an animation in real time, at most 50 a second (browsers)
+  .svg    the layers of a sheet that is folded flat, drawn apart
   .mp4 .webm .mov .mkv .avi .gif   the same as a film, encoded by ffmpeg where it is installed
 A file that exists is replaced, unless it is the one that is read, or one that a run has written.
 docs/formats.md says more.";
@@ -195,6 +197,13 @@ impl Convert {
         }
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
+        }
+        if self
+            .output()
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+        {
+            return layers::write(&recording, self.output());
         }
         // An archive is that of the run, which has them where its scene asks for them.
         let is_asked = recording.scene.scene().output.curvature;

@@ -13,6 +13,7 @@ const EXAMPLES: &str = "\
 Examples:
   isosheet fold crane.svg --open               fold a crease pattern in the folder crane-run, and look at it
   isosheet fold crane.fold --part 0.8          fold it to four fifths of its angles
+  isosheet fold crane.fold --angle 90 --swap   fold it by at most 90 degrees, to the other side
   isosheet fold crane.cp --contact --scene crane.toml
                                                panels touch each other; write the scene that was run
   isosheet fold crane.fold --order 'valleys; 3 7 12; mountains'
@@ -27,7 +28,8 @@ without a unit of length it is 0.2 m long.
 
 Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, then one that is soft in its
 plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which creases
-stay open, which panels bend and stretch, and what stands against the folding; notes before it say more.";
+stay open, which panels bend and stretch, and what stands against the folding, and how large the flat sheet is; notes before it say more. `isosheet convert RUN layers.svg`
+draws the layers of what is folded flat with `--contact`.";
 
 /// As many sentences has the last line at most; notes before it have the others.
 const SENTENCES: usize = 3;
@@ -55,11 +57,12 @@ impl Fold {
             file: &self.pattern,
             scene: self.composing.scene_path(&self.pattern),
         };
-        let scene = pattern.rigid(self.options.frame, self.composing.size())?;
-        let scene = self.options.of(FoldScene {
+        let (scene, facts) = pattern.rigid(self.options.frame, self.composing.size())?;
+        let scene = FoldScene {
             material: self.composing.material_or(&scene.material),
             ..scene
-        });
+        };
+        let scene = self.options.of(scene, facts.sharpest)?;
         self.composing
             .begin_one_of(&self.pattern, &pattern.candidates(&scene)?)?;
         let chosen = pattern.chosen(scene)?;
@@ -75,7 +78,10 @@ impl Fold {
                 .iter()
                 .map(|words| format!("note: {words}\n"))
                 .collect();
-            Some(format!("{notes}folded: {}", words.join(" ")))
+            let words = words.join(" ");
+            let words = words.trim_end_matches('.');
+            let size = facts.size_in_words();
+            Some(format!("{notes}folded: {words}; the flat sheet is {size}."))
         };
         let text = text_of(&chosen.scene)?;
         self.composing.run(&self.pattern, text, verdict)

@@ -1,6 +1,8 @@
 //! How a crease pattern is folded, as command lines say it.
 
+use super::failure::Failure;
 use clap::Args;
+use isosheet_mesh::wording::given;
 use isosheet_scenes::{FoldGroup, FoldScene, Touch};
 
 /// How a crease pattern is folded.
@@ -10,6 +12,14 @@ pub(super) struct FoldOptions {
     /// 1]
     #[arg(long, value_name = "PART", value_parser = part)]
     part: Option<f64>,
+    /// Of a crease pattern, the angle that its sharpest creases are folded by, degrees; the others are folded by
+    /// the same part of theirs [default: all of the angle]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, conflicts_with = "part")]
+    angle: Option<f64>,
+    /// Of a crease pattern, mountains become valleys and valleys mountains: the pattern was drawn from the other
+    /// side of the sheet
+    #[arg(long)]
+    swap: bool,
     /// Of a crease pattern, panels touch each other, and do not pass through each other
     #[arg(long)]
     contact: bool,
@@ -30,24 +40,45 @@ fn part(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a number above 0 and at most 1".to_owned())
 }
 
+/// A fold angle, degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    let angle: Option<f64> = text.parse().ok();
+    angle
+        .filter(|a| *a > 0.0 && *a <= 180.0)
+        .ok_or_else(|| "give a number of degrees above 0 and at most 180".to_owned())
+}
+
 impl FoldOptions {
-    /// A scene that folds a pattern in this way.
-    pub(super) fn of(&self, scene: FoldScene) -> FoldScene {
-        FoldScene {
-            part: self.part.unwrap_or(scene.part),
+    /// A scene that folds a pattern in this way, whose sharpest creases have an angle, degrees.
+    pub(super) fn of(&self, scene: FoldScene, sharpest: f64) -> Result<FoldScene, Failure> {
+        let part = match (self.angle, self.part) {
+            (Some(angle), _) if angle > sharpest => {
+                let (angle, most) = (given(angle), given(sharpest));
+                let message = format!(
+                    "--angle {angle} is more than the creases of the pattern are folded by: at most {most} degrees"
+                );
+                return Err(Failure::misuse(message).remedy(format!("give at most {most}")));
+            }
+            (Some(angle), _) => angle / sharpest,
+            (None, part) => part.unwrap_or(scene.part),
+        };
+        Ok(FoldScene {
+            part: if self.swap { -part } else { part },
             touch: match self.contact {
                 true => Touch::Touches,
                 false => scene.touch,
             },
             order: self.order.clone(),
             ..scene
-        }
+        })
     }
 
     /// The name of an option that is given, if one is.
     pub(super) fn given(&self) -> Option<&'static str> {
         let given = [
             ("--part", self.part.is_some()),
+            ("--angle", self.angle.is_some()),
+            ("--swap", self.swap),
             ("--contact", self.contact),
             ("--order", !self.order.is_empty()),
             ("--frame", self.frame.is_some()),

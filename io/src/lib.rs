@@ -24,6 +24,7 @@ mod given;
 mod hang;
 mod info;
 mod interrupt;
+mod layers;
 mod live;
 mod mesh;
 mod message;

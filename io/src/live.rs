@@ -98,8 +98,9 @@ impl Live {
             file: &self.scene,
             scene: unwritten(&self.scene),
         };
-        let scene = pattern.rigid(self.options.frame, None)?;
-        let scene = pattern.chosen(self.options.of(scene))?.scene;
+        let (scene, facts) = pattern.rigid(self.options.frame, None)?;
+        let scene = self.options.of(scene, facts.sharpest)?;
+        let scene = pattern.chosen(scene)?.scene;
         Ok(SceneFile::parse(
             text_of(&scene)?,
             &pattern.scene,

@@ -5,9 +5,11 @@ use super::failure::{Code, Failure};
 use super::interrupt;
 use super::message::print_progress;
 use super::progress::{LINES, go_on};
-use isosheet_formats::{MeshOptions, read_mesh_with};
+use isosheet_formats::{EdgeAssignment, FileCrease, MeshOptions, read_mesh_with};
+use isosheet_mesh::wording::brief;
 use isosheet_runs::{FoldTrial, FoldVerdict, folds_to};
 use isosheet_scenes::{FoldResidual, FoldScene, Panels, SceneFile, Touch, size as extent};
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -16,6 +18,45 @@ use std::time::Instant;
 pub(super) struct Pattern<'a> {
     pub(super) file: &'a Path,
     pub(super) scene: PathBuf,
+}
+
+/// What the command needs to know of a pattern.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PatternFacts {
+    /// The angle that its sharpest creases are folded by, degrees.
+    pub(super) sharpest: f64,
+    /// Its width and height as it is folded, metres.
+    pub(super) size: [f64; 2],
+}
+
+impl PatternFacts {
+    /// Its size in words: in millimetres up to a metre, as drawings have them.
+    pub(super) fn size_in_words(&self) -> String {
+        let (factor, unit) = match self.size.iter().all(|length| *length < 1.0) {
+            true => (1e3, "mm"),
+            false => (1.0, "m"),
+        };
+        let [width, height] = self.size.map(|length| brief(factor * length));
+        format!("{width} by {height} {unit}")
+    }
+}
+
+/// The angle of the sharpest creases, degrees: mountains and valleys without one are folded by 180.
+fn sharpest(creases: &[FileCrease]) -> f64 {
+    let angles = creases.iter().map(|crease| match crease.assignment {
+        EdgeAssignment::Mountain | EdgeAssignment::Valley => crease.angle.unwrap_or(PI).abs(),
+        _ => crease.angle.unwrap_or(0.0).abs(),
+    });
+    let largest = angles.fold(0.0, f64::max).to_degrees();
+    if largest > 0.0 { largest } else { 180.0 }
+}
+
+/// The width and the height of positions (three numbers for each vertex).
+fn extents(positions: &[f64]) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let values = || positions.iter().skip(axis).step_by(3).copied();
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    })
 }
 
 /// The material and the longest side (metres) of a sheet of which neither the file nor the command says them.
@@ -88,12 +129,12 @@ impl Chosen {
 }
 
 impl Pattern<'_> {
-    /// The scene of rigid panels of a size (metres) if one is given.
+    /// The scene of rigid panels of a size (metres) if one is given, and what the pattern is like.
     pub(super) fn rigid(
         &self,
         frame: Option<usize>,
         size: Option<f64>,
-    ) -> Result<FoldScene, Failure> {
+    ) -> Result<(FoldScene, PatternFacts), Failure> {
         let options = MeshOptions {
             frame: frame.map(isosheet_formats::FoldFrame::Number),
             ..MeshOptions::default()
@@ -122,7 +163,11 @@ impl Pattern<'_> {
             ));
             SIZE
         });
-        Ok(FoldScene {
+        let facts = PatternFacts {
+            sharpest: sharpest(&mesh.creases),
+            size: extents(&mesh.positions).map(|length| length * size / side),
+        };
+        let scene = FoldScene {
             pattern: named_from(&self.scene, self.file)?,
             frame,
             scale: size / side,
@@ -132,7 +177,8 @@ impl Pattern<'_> {
             part: 1.0,
             touch: Touch::Passes,
             order: Vec::new(),
-        })
+        };
+        Ok((scene, facts))
     }
 
     /// The texts of the scenes of which one is chosen.

@@ -233,7 +233,7 @@ fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<It
 
 /// Of each face the number of the face that stands for its panel. Panels are what is left when the sheet is
 /// cut along its creases.
-fn panels(topology: &Topology, targets: &FoldTargets) -> Vec<usize> {
+pub(super) fn panels(topology: &Topology, targets: &FoldTargets) -> Vec<usize> {
     let mut panel: Vec<usize> = (0..topology.face_count()).collect();
     for e in inside_panels(topology, targets) {
         if let [Some(a), Some(b)] = topology.edge_faces(e) {

@@ -15,6 +15,7 @@ mod ends;
 mod events;
 mod extending;
 mod fold;
+mod fold_sides;
 mod fold_verdicts;
 mod folders;
 mod folding;

@@ -41,7 +41,7 @@ pub struct FoldScene {
     pub material: String,
     /// What the panels are.
     pub panels: Panels,
-    /// The part of the angles.
+    /// The part of the angles; mountains are valleys where it is negative.
     pub part: f64,
     /// Whether panels touch each other.
     pub touch: Touch,
