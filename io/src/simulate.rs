@@ -202,6 +202,13 @@ fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
     let residuals = ending.residuals.in_words().into_iter();
     let told: String = taut
         .chain(residuals.map(|words| format!(", {words}")))
+        .chain(
+            ending
+                .kept
+                .in_words()
+                .iter()
+                .map(|words| format!(", {words}")),
+        )
         .collect();
     format!(
         "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}{told}; see {}",

@@ -7,6 +7,7 @@ use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
+use super::kept::KeptAngles;
 use super::summary::{Ending, Measured};
 use super::time_error::TimeError;
 use super::vibration::Vibrations;
@@ -99,6 +100,9 @@ pub(crate) struct RunProgress {
     /// What an elastic sheet did so far.
     #[serde(default)]
     pub(crate) elastic: Option<ElasticSummary>,
+    /// What stays of the angles that have yielded so far.
+    #[serde(default)]
+    pub(crate) kept: KeptAngles,
     /// How it ended, if it did.
     pub(crate) ending: Option<Ending>,
 }

@@ -49,6 +49,7 @@ impl RunWriter {
                 .collect(),
             taut: None,
             failed: None,
+            kept: self.progress.kept.of_yielded(),
             residuals: self.residuals(under_way),
         }
     }

@@ -258,6 +258,9 @@ impl Rows {
                 done.to_string(),
             );
         }
+        for words in ending.kept.in_words() {
+            self.add("kept after unloading", words);
+        }
         for words in ending.residuals.in_words() {
             self.add("targets at the end", words);
         }

@@ -5,6 +5,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
+use super::kept::KeptAngles;
 use super::time_error::TimeError;
 use super::vibration::Vibration;
 use isosheet_mesh::Part;
@@ -127,6 +128,9 @@ pub struct Ending {
     /// What was wrong with the step that failed, if one failed after the last one that was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
+    /// What stays of the angles that have yielded.
+    #[serde(default, skip_serializing_if = "KeptAngles::is_empty")]
+    pub kept: KeptAngles,
     /// How far the sheets are from what the scene asks for.
     #[serde(flatten)]
     pub residuals: Residuals,

@@ -134,6 +134,7 @@ impl RunWriter {
     fn record_start(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
         self.progress.elastic = ElasticSummary::of(&under_way.simulation);
         self.observe_elastic(under_way);
+        self.progress.kept.observe(under_way);
         self.progress.start_energy = under_way.simulation.energy();
         let row = row_of_start(&under_way.simulation);
         self.progress.energy = EnergySummary::of_start(&under_way.simulation);
@@ -158,6 +159,7 @@ impl RunWriter {
         self.count(scene, under_way, report);
         self.observe_sheets(under_way);
         self.observe_elastic(under_way);
+        self.progress.kept.observe(under_way);
         self.follow_folds(under_way);
         let model = under_way.simulation.model();
         let row = row_of_step(report, model, self.progress.start_energy);

@@ -121,6 +121,7 @@ mod placing {
 mod measures {
     pub(crate) mod measure;
     pub(crate) mod targets;
+    pub(crate) mod yielding;
 }
 
 /// What holds and touches: supports, seams and contact, and when they do.
@@ -203,6 +204,7 @@ pub use loads::follower_loads::{GasKey, Moment, Pressure};
 pub use loads::forces::{Acceleration, Forces, Frame, Load};
 pub use measures::measure::{Gauge, Measure, Quantity};
 pub use measures::targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
+pub use measures::yielding::{YieldingAngles, YieldingCrease};
 pub use meshes::direction::{Direction, TextureAxis, TextureDirection};
 pub use meshes::drawing::DrawingFile;
 pub use meshes::mesh::{DiagonalsKey, Mesh};

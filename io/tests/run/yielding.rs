@@ -50,6 +50,74 @@ fn a_history_says_what_yielding_has_dissipated() {
     assert_eq!(end, plastic.last().copied());
 }
 
+/// A panel is folded by 90 degrees at a crease of a sheet without bending stiffness, and turned back to 70.
+const FOLDED: &str = "version = 1
+[sheet]
+mesh = { rectangle = { width = 0.2, height = 0.1, columns = 5, rows = 1 } }
+isometry = \"rods\"
+bending = \"none\"
+density = 0.08
+damping = 20
+[[crease]]
+name = \"lid\"
+at = { line = { from = [0.08, 0, 0], to = [0.08, 0.1, 0] } }
+stiffness = 0.02
+yield = { moment = 0.01 }
+[[support]]
+at = { box = { min = [0.03, -1, -1], max = [0.09, 1, 1] } }
+[[support]]
+at = { box = { min = [0.11, -1, -1], max = [1, 1, 1] } }
+[support.hold.moving_pin.rotation]
+centre = [0.08, 0, 0]
+axis = [0, 1, 0]
+angle = { keyframes = { interpolation = \"linear\", keys = [[0, 0], [1, -90], [2, -70]] } }
+[stop]
+time = 2.0
+";
+
+/// A crease without hardening keeps its angle under load less its moment over its stiffness.
+#[test]
+fn the_last_line_tells_what_a_crease_keeps() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("lid.toml"), FOLDED).unwrap();
+    let simulated = run(dir.path(), &["simulate", "lid.toml", "--out", "run"]);
+    assert_eq!(code(&simulated), Some(0), "{}", stderr(&simulated));
+    let said = String::from_utf8(simulated.stdout).unwrap();
+    let summary = fs::read_to_string(dir.path().join("run/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let kept = &summary["ending"]["kept"]["creases"][0];
+    let springback = (0.01_f64 / 0.02).to_degrees();
+    for (key, expected) in [
+        ("loaded", 90.0),
+        ("kept", 90.0 - springback),
+        ("springback", springback),
+    ] {
+        let found = kept[key].as_f64().unwrap();
+        // Steps need not end at the very time of the largest angle.
+        assert!(
+            (found - expected).abs() < 1.0,
+            "{key} {found} of {expected}"
+        );
+    }
+    let words =
+        "`crease[0]` (\"lid\") keeps 61.4 of 90.0 degrees under load, a springback of 28.6 degrees";
+    assert!(said.contains(words), "{said}");
+    let info = run(dir.path(), &["info", "run"]);
+    assert!(String::from_utf8(info.stdout).unwrap().contains(words));
+    // Without yielding there is nothing to tell.
+    let elastic = [
+        "simulate",
+        "lid.toml",
+        "--out",
+        "elastic",
+        "--set",
+        "crease[0].yield.moment=10",
+    ];
+    let elastic = run(dir.path(), &elastic);
+    assert_eq!(code(&elastic), Some(0), "{}", stderr(&elastic));
+    assert!(!String::from_utf8(elastic.stdout).unwrap().contains("keeps"));
+}
+
 /// Rigidity (N m), yield moment (N) and hardening (N m) of [`bent`].
 const D: f64 = 5e-4;
 const MOMENT: f64 = 1e-3;

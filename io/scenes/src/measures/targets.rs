@@ -1,5 +1,6 @@
 //! What a scene asks its sheets to reach, and how far they are from it.
 
+use crate::measures::yielding::{YieldingAngles, YieldingCrease};
 use crate::sheets::creases::Crease;
 use crate::sheets::folding::{FoldResidual, FoldTargets};
 use crate::time::kinks::Kinks;
@@ -14,6 +15,8 @@ pub struct Targets {
     pub folding: Option<FoldTargets>,
     /// The creases of the scene that are driven.
     pub creases: Vec<DrivenCrease>,
+    /// The creases of the scene that can yield.
+    pub yielding: Vec<YieldingCrease>,
     /// The seams, in the order of the scene.
     pub seams: Vec<Glue>,
 }
@@ -97,6 +100,11 @@ impl Targets {
     pub fn glued(&self) -> Vec<[VertexId; 2]> {
         let pairs = self.seams.iter().flat_map(|seam| seam.pairs());
         pairs.copied().collect()
+    }
+
+    /// The angles of the creases that can yield, in their order, where a simulation is.
+    pub fn yielding_angles(&self, simulation: &Simulation) -> Vec<YieldingAngles> {
+        YieldingCrease::angles(&self.yielding, simulation)
     }
 
     /// How far the sheets are from what is asked for where a simulation is.

@@ -3,6 +3,7 @@
 use super::builder::{Builder, PlateMadeOf, at};
 use crate::measures::measure::CreaseGauge;
 use crate::measures::targets::DrivenCrease;
+use crate::measures::yielding::YieldingCrease;
 use crate::placing::in_words::elastic_in_words;
 use crate::placing::placed::PlacedSheet;
 use crate::sheets::creases::{EdgeFolds, FoldSprings};
@@ -232,6 +233,8 @@ impl Builder<'_> {
                 let found = crease.springs(&key, &own.form.unplaced, own.form.roles.as_ref())?;
                 let driven = DrivenCrease::of((k, crease), &found, |e| own.part.edge(e));
                 self.targets.creases.extend(driven);
+                let yielding = YieldingCrease::of((k, crease), &found, |e| own.part.edge(e));
+                self.targets.yielding.extend(yielding);
                 springs.add(key, crease.folds(), found);
             }
         }
