@@ -28,7 +28,7 @@ export function floorOf(series, all) {
   return roundOff(series.unit === "" ? Math.max(largest, 1) : largest);
 }
 
-/** Ticks of an axis as texts. */
+/** Ticks of a linear axis as texts. */
 function tickTexts(ticks, digits) {
   const largest = largestOf(ticks);
   // Ticks that are close to each other need more digits to be told apart.
@@ -197,7 +197,7 @@ class Plot {
           gap: 4,
           splits: logarithmic ? (_, __, low, high) => decades(low, high) : undefined,
           filter: logarithmic ? (_, ticks) => ticks : undefined,
-          values: (_, ticks) => tickTexts(ticks, 3),
+          values: (_, ticks) => (logarithmic ? ticks.map((v) => number(v, 3)) : tickTexts(ticks, 3)),
         },
       ],
       series: [
