@@ -10,7 +10,9 @@ const USUAL_SIDE = [0.55, -1, 0.5];
 const AROUND = 16,
   HEIGHTS = [15, 30, 50];
 /** The share of the most that can be seen which the usual side has to show. */
-const ENOUGH = 0.85;
+export const ENOUGH = 0.85;
+/** The same beside bodies, which a sheet may hide that is looked at from above. */
+export const ENOUGH_BESIDE_BODIES = 0.5;
 /** A half-space hides what is behind it, which is seen from this side of its surface alone (a sine). */
 const ABOVE = 0.1;
 
@@ -87,7 +89,7 @@ export function projectedAreas(x, faces, from) {
  * can be seen, so that the sheet is seen edge-on in none. The usual side where it shows nearly as much. Normals of
  * half-spaces say where nothing is seen from.
  */
-export function bestSide(replay, normals = []) {
+export function bestSide(replay, normals = [], enough = ENOUGH) {
   const from = sides(replay.up).filter((d) =>
     normals.every((n) => n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > ABOVE),
   );
@@ -103,7 +105,7 @@ export function bestSide(replay, normals = []) {
   }
   const best = scores.indexOf(Math.max(...scores));
   const first = from[0].every((c, k) => c === usual[k]) ? 0 : best;
-  return scores[first] >= scores[best] + Math.log(ENOUGH) ? from[first] : from[best];
+  return scores[first] >= scores[best] + Math.log(enough) ? from[first] : from[best];
 }
 
 /** The box around the sheet in all frames, with the sheet moved so that its middle stays where it is at first. */

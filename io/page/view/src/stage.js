@@ -17,7 +17,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { addPatch, makeBody, placeBody } from "./bodies.js";
-import { bestSide, boxAboutMiddle, distanceToFit } from "./framing.js";
+import { ENOUGH, ENOUGH_BESIDE_BODIES, bestSide, boxAboutMiddle, distanceToFit } from "./framing.js";
 import { Ground } from "./ground.js";
 import { SheetObjects } from "./sheet.js";
 import { themeColours } from "./theme.js";
@@ -239,13 +239,16 @@ export class Stage {
 
   /** From where the camera looks at the start. */
   side() {
+    const { bodies } = this.replay.data;
+    const isPlane = (k) => bodies[k].shape.kind === "half_space";
     const upright = (turn) => new Vector3(0, 0, 1).applyQuaternion(turn).toArray();
     this.bestSide ??= new Vector3(
       ...bestSide(
         this.replay,
         this.bodyGroups
-          .filter((_, k) => this.replay.data.bodies[k].shape.kind === "half_space")
+          .filter((_, k) => isPlane(k))
           .map((group) => upright(group.quaternion)),
+        bodies.every((_, k) => isPlane(k)) ? ENOUGH : ENOUGH_BESIDE_BODIES,
       ),
     );
     return this.bestSide;

@@ -60,6 +60,13 @@ test("no plane sheet is looked at edge-on, whichever axis is up", () => {
   }
 });
 
+test("a flat sheet beside bodies is looked at from the usual side, which shows more of them", () => {
+  // The usual side shows the sine of 23.7 degrees of a flat sheet, the highest one that of 50 degrees.
+  const usual = sides(2)[0];
+  assert.deepEqual(bestSide(motion([flat]), [], 0.5), usual);
+  assert.ok(bestSide(motion([flat]))[2] > usual[2]);
+});
+
 test("nothing is looked at from behind a wall", () => {
   for (const normal of [[0, -1, 0], [0, 1, 0], [1, 0, 0]]) {
     const side = bestSide(motion([flat]), [normal]);
