@@ -12,12 +12,12 @@ pub(super) struct FoldOptions {
     /// 1]
     #[arg(long, value_name = "PART", value_parser = part)]
     part: Option<f64>,
-    /// Of a crease pattern, the angle that its sharpest creases are folded by, degrees; the others are folded by
-    /// the same part of theirs [default: all of the angle]
+    /// Of a crease pattern, the angle that its sharpest creases are folded by, degrees; the others are folded
+    /// by the same part of theirs [default: all of the angle]
     #[arg(long, value_name = "DEGREES", value_parser = angle, conflicts_with = "part")]
     angle: Option<f64>,
-    /// Of a crease pattern, mountains become valleys and valleys mountains: the pattern was drawn from the other
-    /// side of the sheet
+    /// Of a crease pattern, mountains become valleys and valleys mountains: the pattern was drawn from the
+    /// other side of the sheet
     #[arg(long)]
     swap: bool,
     /// Of a crease pattern, panels touch each other, and do not pass through each other

@@ -41,7 +41,8 @@ pub struct KeptFold {
 pub struct KeptBend {
     /// The angle that is kept, degrees.
     pub kept: f64,
-    /// The largest angle in the run by which the face with the largest kept angle was bent beyond that, degrees.
+    /// The largest angle in the run by which the face with the largest kept angle was bent beyond that,
+    /// degrees.
     pub springback: f64,
     /// The middle of the face in the flat sheet, metres.
     pub at: [f64; 3],

@@ -20,8 +20,8 @@ const APART: f64 = 0.28;
 const SIDES: [&str; 2] = ["#faf0d6", "#78acd6"];
 
 impl Layers {
-    /// The layers of the last frame of a run as an SVG drawing: from below to above, each with its number, and the
-    /// two sides of the sheet in two colours.
+    /// The layers of the last frame of a run as an SVG drawing: from below to above, each with its number,
+    /// and the two sides of the sheet in two colours.
     pub fn drawing(&self, recording: &Recording) -> String {
         let last = recording.trajectory.len().saturating_sub(1);
         let x = recording.trajectory.frame(last).unwrap_or_default();

@@ -15,7 +15,8 @@ pub struct Layers {
     pub panels: Vec<usize>,
     /// The layer of each panel, from 0 at the bottom: it is above all panels that it covers.
     pub levels: Vec<usize>,
-    /// Whether the front of each panel is seen from above: the side from which its faces are counter-clockwise.
+    /// Whether the front of each panel is seen from above: the side from which its faces are
+    /// counter-clockwise.
     pub shows_front: Vec<bool>,
     /// Of each two panels that cover each other a face of either, the lower one first.
     pub covers: Vec<[FaceId; 2]>,
@@ -118,8 +119,8 @@ impl Layers {
         self.levels.iter().max().map_or(0, |top| top + 1)
     }
 
-    /// The order as `faceOrders` of the FOLD format has it: `[f, g, s]` with `s = 1` where `f` lies on the side
-    /// of `g` to which its normal points, and `-1` where it lies on the other one.
+    /// The order as `faceOrders` of the FOLD format has it: `[f, g, s]` with `s = 1` where `f` lies on the
+    /// side of `g` to which its normal points, and `-1` where it lies on the other one.
     pub fn face_orders(&self) -> Vec<[i64; 3]> {
         let order = |[lower, upper]: &[FaceId; 2]| {
             let shows_front = self.shows_front[self.panels[lower.index()]];

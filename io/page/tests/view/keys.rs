@@ -77,7 +77,8 @@ fn space_plays_before_anything_was_clicked() {
     assert_eq!(page.value(PLAYS), json!(false));
 }
 
-/// Controls that are reached by the tabulator are used by Enter, for people without a pointer, and space plays.
+/// Controls that are reached by the tabulator are used by Enter, for people without a pointer, and space
+/// plays.
 #[test]
 fn space_plays_wherever_the_focus_is() {
     let Some(mut page) = Driven::open(&waving(2, 12).to_html().unwrap()) else {

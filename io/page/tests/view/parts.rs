@@ -1,5 +1,5 @@
-//! The parts of the program of the page that need no browser: their tests run where Node.js is installed, and the
-//! test says so where it is not.
+//! The parts of the program of the page that need no browser: their tests run where Node.js is installed,
+//! and the test says so where it is not.
 
 use crate::skip::{runs, skipped};
 use std::path::Path;

@@ -1,7 +1,8 @@
 use super::{Layers, LayersError};
 use isosheet_mesh::Topology;
 
-/// Strips of a leporello that lie on each other: each is 1 wide and 2 long, and rises by `gap` over the last one.
+/// Strips of a leporello that lie on each other: each is 1 wide and 2 long, and rises by `gap` over the last
+/// one.
 fn leporello(strips: usize, gap: f64) -> (Topology, Vec<f64>, Vec<usize>) {
     let mut x = Vec::new();
     for k in 0..=strips {
