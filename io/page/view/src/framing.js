@@ -87,7 +87,7 @@ export function projectedAreas(x, faces, from) {
 /**
  * The side from which most of the sheet is seen: the product over some frames of what is seen of the most that
  * can be seen, so that the sheet is seen edge-on in none. The usual side where it shows nearly as much. Normals of
- * half-spaces say where nothing is seen from.
+ * planes, to the side of the sheet, say from where it is seen.
  */
 export function bestSide(replay, normals = [], enough = ENOUGH) {
   const from = sides(replay.up).filter((d) =>

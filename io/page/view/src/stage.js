@@ -104,7 +104,7 @@ export class Stage {
   }
 
   /**
-   * Frames the sheet in all frames, and the bodies unless they are much larger. Where the sheet goes far away, the
+   * Frames the sheet in all frames, and each body unless it is much larger or far away. Where the sheet goes far away, the
    * camera follows it, and what is framed is the sheet about its middle. Half-spaces reach beyond what is framed.
    */
   chooseUnits() {
@@ -119,12 +119,15 @@ export class Stage {
     const middles = this.replay.middles();
     const about = new Box3(...boxAboutMiddle(this.replay, middles).map((corner) => new Vector3(...corner)));
     this.bodies.updateMatrixWorld(true);
-    const bodies = new Box3();
-    for (const group of this.bodyGroups) if (group.children.length > 0) bodies.expandByObject(group);
-    this.follows = length(box) > LARGEST_FRAME * length(about.clone().union(still).union(bodies));
+    const bodies = this.bodyGroups.filter((group) => group.children.length > 0).map((group) => new Box3().setFromObject(group));
+    const reach = bodies.reduce((sum, body) => sum.union(body), about.clone().union(still));
+    this.follows = length(box) > LARGEST_FRAME * length(reach);
     if (this.follows) box.copy(about).union(still);
-    const all = box.clone().union(bodies);
-    if (length(all) <= LARGEST_FRAME * length(box)) box.copy(all);
+    const longest = LARGEST_FRAME * length(box);
+    for (const body of bodies) {
+      const wide = box.clone().union(body);
+      if (length(wide) <= longest) box.copy(wide);
+    }
     this.centre = box.getCenter(new Vector3()).toArray();
     this.size = box.getSize(point).length() / 2 || 1;
     const half = point.divideScalar(2 * this.size);
@@ -241,13 +244,18 @@ export class Stage {
   side() {
     const { bodies } = this.replay.data;
     const isPlane = (k) => bodies[k].shape.kind === "half_space";
-    const upright = (turn) => new Vector3(0, 0, 1).applyQuaternion(turn).toArray();
+    // A plane hides the sheet from the side on which the sheet is not.
+    const middle = new Vector3(...this.replay.middles()[0]);
+    const towardSheet = ({ quaternion, position }) => {
+      const normal = new Vector3(0, 0, 1).applyQuaternion(quaternion);
+      return normal.multiplyScalar(middle.clone().sub(position).dot(normal) < 0 ? -1 : 1).toArray();
+    };
     this.bestSide ??= new Vector3(
       ...bestSide(
         this.replay,
         this.bodyGroups
           .filter((_, k) => isPlane(k))
-          .map((group) => upright(group.quaternion)),
+          .map(towardSheet),
         bodies.every((_, k) => isPlane(k)) ? ENOUGH : ENOUGH_BESIDE_BODIES,
       ),
     );
