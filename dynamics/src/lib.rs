@@ -78,10 +78,11 @@ pub use isosheet_model::{
     AccelerationField, Air, AirError, Attachment, BadPotential, BodyForce, BodyTorque,
     ClampAcrossMesh, Continuation, Cut, Driver, EdgeMoment, ElasticDeformation, EnclosedGas, Gas,
     GasError, GasState, Hand, HandError, Infeasibility, Isometry, JointCoordinate, JointError,
-    JointSpring, LoadError, LoadedFaces, LoadedFacesError, ModelError, PotentialFault,
-    PotentialOfPart, Pressing, Reason, RigidBody, RigidBodyError, SheetModel, SheetOfMaterial,
-    SheetOfMaterialError, Solid, SolidError, State, StepError, Support, TraceEvent, TurningLoad,
-    VertexConstraint, VertexLoad, Wind, constraint, immobile_vertices, term,
+    JointSpring, LoadError, LoadedFaces, LoadedFacesError, ModelError, NoEquilibrium,
+    PotentialFault, PotentialOfPart, Pressing, Reason, RigidBody, RigidBodyError, SheetModel,
+    SheetOfMaterial, SheetOfMaterialError, Solid, SolidError, State, StepError, Support,
+    TraceEvent, TurningLoad, VertexConstraint, VertexLoad, Wind, constraint, immobile_vertices,
+    term,
 };
 pub use isosheet_motion::*;
 pub use report::checkpoint_error::CheckpointError;

@@ -36,6 +36,7 @@ mod pictures;
 mod printable;
 mod progress;
 mod reading;
+mod rest;
 mod simulate;
 mod start;
 mod strip;
@@ -57,6 +58,7 @@ Examples:
   isosheet fold crane.svg --open               fold a crease pattern, and look at it
   isosheet drape cloth.obj --on vase.obj       let a sheet fall on a body; also `hang` and `crumple`
   isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
+  isosheet rest cloth.toml                     find the shape that the sheet takes at rest
   isosheet info cloth-run                      say what came of it
   isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
   isosheet sweep cloth.toml --over sheet.density=0.1,0.2
@@ -80,6 +82,8 @@ struct Cli {
 enum Command {
     /// Run a scene; continue it if a part of it is done, do nothing if it is complete
     Simulate(simulate::Simulate),
+    /// Find the shape that the sheet of a scene takes at rest
+    Rest(rest::RestArgs),
     /// Fold a crease pattern (FOLD, SVG, CP, OPX) without a scene file
     Fold(fold::Fold),
     /// Let the sheet of a mesh or a drawing fall on a table or a body, without a scene file
@@ -141,6 +145,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     cli.verbosity.choose();
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
+        Command::Rest(rest) => rest.run(),
         Command::Fold(fold) => fold.run(),
         Command::Drape(drape) => drape.run(),
         Command::Hang(hang) => hang.run(),

@@ -8,6 +8,7 @@ use super::progress::{Progress, event};
 use super::trace::TraceFile;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
+use isosheet_mesh::wording::brief;
 use isosheet_runs::{
     Existing, Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
 };
@@ -199,8 +200,11 @@ fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
         .taut
         .iter()
         .map(|demand| format!(", ended since {demand}"));
+    let frequency = ending.lowest_frequency.iter();
+    let frequency = frequency.map(|f| format!(", lowest frequency {} Hz", brief(*f)));
     let residuals = ending.residuals.in_words().into_iter();
     let told: String = taut
+        .chain(frequency)
         .chain(residuals.map(|words| format!(", {words}")))
         .chain(
             ending

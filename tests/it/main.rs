@@ -18,6 +18,7 @@ mod directions;
 mod effort;
 mod elastic;
 mod elastic_balance;
+mod equilibrium;
 mod flat;
 mod forces;
 mod hard;

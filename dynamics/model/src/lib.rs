@@ -29,6 +29,7 @@ pub use report::contact_error::{
 };
 pub use report::engine_error::{AdvisedError, EngineError};
 pub use report::infeasibility::{Driver, Infeasibility};
+pub use report::no_equilibrium::NoEquilibrium;
 pub use report::potential_fault::{BadPotential, PotentialFault};
 pub use report::pressing::Pressing;
 pub use report::reason::Reason;

@@ -233,6 +233,9 @@ pub struct StepStart<'a> {
     pub before: Option<&'a State>,
     /// Length of the step, seconds.
     pub span: f64,
+    /// Time in which surfaces slide as far as they do in the step, seconds: the length of the step. (Steps of
+    /// a search for an equilibrium have a length of their own for it.)
+    pub sliding_time: f64,
     /// Effective step `h`, the root of the factor of the forces, seconds.
     pub h: f64,
     /// How far back the formula of the step reaches.

@@ -375,11 +375,6 @@ impl ActiveContacts {
         &self.bodies
     }
 
-    /// The span of the step.
-    pub(crate) fn span(&self) -> StepSpan {
-        self.span
-    }
-
     /// Time of the bodies' places, seconds.
     pub fn time(&self) -> f64 {
         self.span.t0 + self.progress * self.span.h

@@ -12,6 +12,8 @@ pub struct Course<'a> {
     pub rest: &'a [f64],
     /// The effective step `tau`, seconds.
     pub tau: f64,
+    /// The length of the step, seconds: Coulomb's law has its speeds in metres a step.
+    pub span: f64,
 }
 
 impl<'a> Course<'a> {
@@ -21,6 +23,7 @@ impl<'a> Course<'a> {
             start,
             rest: start,
             tau: h,
+            span: h,
         }
     }
 }
@@ -31,6 +34,7 @@ pub(super) struct EndVelocity {
     /// The points at `y`; none without other laws of friction than Coulomb's.
     rest: Vec<f64>,
     tau: f64,
+    span: f64,
 }
 
 impl EndVelocity {
@@ -42,6 +46,7 @@ impl EndVelocity {
         start: &StepStart<'_>,
     ) {
         self.tau = start.h;
+        self.span = start.sliding_time;
         self.rest.clear();
         if laws.has_other_laws() {
             let rest = SurfacePoints::placed(points, start.rest);
@@ -55,6 +60,7 @@ impl EndVelocity {
             start,
             rest: &self.rest,
             tau: self.tau,
+            span: self.span,
         }
     }
 }

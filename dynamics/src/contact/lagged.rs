@@ -4,7 +4,7 @@ use super::friction::coulomb;
 use super::stencil::Stencil;
 use super::{
     ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws, Coulomb,
-    CouplingSink, Course, Friction, FrictionError, FrictionLaw, StepSpan, add_weighted,
+    CouplingSink, Course, Friction, FrictionError, FrictionLaw, add_weighted,
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -198,11 +198,10 @@ impl LaggedFriction {
         if laws.is_frictionless() {
             return;
         }
-        let span = active.span();
         for contact in active.list() {
             let ends = [contact.vertices[0], contact.vertices[3]];
             let friction = laws.friction(contact.key.body, ends);
-            let Some(law) = self.law_of(friction, laws.rest_speed, span, course.tau) else {
+            let Some(law) = self.law_of(friction, laws.rest_speed, course) else {
                 continue;
             };
             let lagged = FrictionContact::new(contact, barrier, law, x, active.bodies());
@@ -228,17 +227,16 @@ impl LaggedFriction {
         &self,
         friction: &Friction,
         rest_speed: f64,
-        span: StepSpan,
-        tau: f64,
+        Course { tau, span, .. }: Course<'_>,
     ) -> Option<LawOfContact> {
         match friction {
             Friction::Coulomb(coefficients) => {
-                coulomb(*coefficients, rest_speed, span.h).map(LawOfContact::Coulomb)
+                coulomb(*coefficients, rest_speed, span).map(LawOfContact::Coulomb)
             }
-            Friction::Law(law) if span.h > 0.0 => Some(LawOfContact::Other {
+            Friction::Law(law) if span > 0.0 => Some(LawOfContact::Other {
                 number: self.number(law),
                 tau,
-                part: tau / span.h,
+                part: tau / span,
             }),
             Friction::Law(_) => None,
         }

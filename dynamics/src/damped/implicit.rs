@@ -195,6 +195,7 @@ fn minimised(
         memories: attempt.memories,
         before: previous,
         span: h,
+        sliding_time: h,
         h: k * h,
         formula,
         back: b,
@@ -202,14 +203,14 @@ fn minimised(
         prediction: &prediction,
         ahead: &ahead,
     };
-    let problem = StepProblem {
+    let mut problem = StepProblem {
         model,
         memories: attempt.memories,
         objective: scene.objective,
         start,
         phases: attempt.phases,
     };
-    let outcome = minimiser.minimise(problem, effort);
+    let outcome = minimiser.minimise(&mut problem, effort);
     minimiser.start = [rest, prediction, ahead];
     let (minimum, exchange) = outcome?;
     let motion = &mut proposal.motion;
@@ -231,6 +232,7 @@ fn minimised(
         exchange,
         damped: model.damping_loss(&state.v, h),
         error: Some(LocalError::of(model, previous, state, &motion.state)),
+        lowest_frequency: None,
     };
     Ok(())
 }

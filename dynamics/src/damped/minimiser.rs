@@ -22,6 +22,7 @@ use isosheet_model::Reason;
 use isosheet_model::StepError;
 use isosheet_model::TraceEvent;
 use isosheet_model::term::Exchange;
+pub(crate) use lagrangian::Stability;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
@@ -100,6 +101,66 @@ impl Minimiser {
         work.lagrangian.matrix.reserve(model, attempt.couplings())
     }
 
+    /// Whether the equilibrium that was found last is stable: it is a minimum of steps of so many seconds.
+    pub(crate) fn stability(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        length: f64,
+        effort: &mut SolverEffort<'_>,
+    ) -> Stability {
+        let Workspace {
+            lagrangian,
+            options,
+            tuning,
+            ..
+        } = &mut self.work;
+        // Rods are springs here, as stiff as in the step.
+        let longer = length / problem.h();
+        lagrangian.set_stiffness(
+            tuning.first_stiffness * longer * longer,
+            options.stiffness * longer * longer,
+        );
+        lagrangian.scale_multipliers(longer);
+        problem.start.h = length;
+        lagrangian.merit(problem);
+        let stability = lagrangian.stability(problem, options.seed, effort);
+        lagrangian.scale_multipliers(1.0 / longer);
+        stability
+    }
+
+    /// Displaces what was found last at random; it is in [`Minimiser::x`].
+    pub(crate) fn disturb(&mut self, problem: &mut StepProblem<'_>, part: f64) {
+        let Workspace {
+            lagrangian,
+            options,
+            ..
+        } = &mut self.work;
+        lagrangian.perturb(problem, options.seed, part);
+    }
+
+    /// Makes the multipliers of the last minimisation the first guess of the next, whose effective step is so
+    /// many times as long.
+    pub(crate) fn recall_last(&mut self, longer: f64) {
+        let Workspace {
+            lagrangian,
+            remembered,
+            ..
+        } = &mut self.work;
+        let ratio = longer * longer;
+        for (m, l) in remembered.iter_mut().zip(&lagrangian.multipliers) {
+            *m = ratio * l;
+        }
+        for l in &mut lagrangian.vertex_rows.multipliers {
+            *l *= ratio;
+        }
+    }
+
+    /// Forgets the multipliers.
+    pub(crate) fn forget(&mut self) {
+        self.work.remembered.fill(0.0);
+        self.work.lagrangian.clear_multipliers();
+    }
+
     /// Leaves what the step that was just minimised gives to the next; `h` is the effective step.
     pub(crate) fn remember(&self, h: f64, history: &mut History) {
         let work = &self.work;
@@ -126,10 +187,9 @@ impl Minimiser {
     /// would end in contact.
     pub(crate) fn minimise(
         &mut self,
-        mut problem: StepProblem<'_>,
+        problem: &mut StepProblem<'_>,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(Minimum, Exchange), StepError> {
-        let problem = &mut problem;
         // An iteration has many short pieces between the factorisations that are shared.
         let _awake = self.work.lagrangian.matrix.is_shared().then(Awake::new);
         self.work.refusal = None;

@@ -1,4 +1,5 @@
 //! The damped methods: a step is a minimum over the positions with the rest lengths.
+pub(crate) mod equilibrium;
 pub(crate) mod implicit;
 pub(crate) mod minimiser;
 pub(crate) mod options;

@@ -2,6 +2,7 @@
 
 use crate::conservative::energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 use crate::conservative::rattle::{Rattle, RattleOptions};
+use crate::damped::equilibrium::Equilibrium;
 use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
 use crate::step::integrator::Integrator;
@@ -45,6 +46,21 @@ pub enum Method {
     /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before, and are
     /// implicit Euler (`w = 0`). One such step leaves the order two.
     Bdf2(ImplicitOptions),
+    /// Equilibria: each step ends at rest, where the forces at its end balance,
+    ///
+    /// ```text
+    /// 0 = f(x1) + G(x1)^T L,   v1 = 0,   c(x1) = 0.
+    /// ```
+    ///
+    /// `x1` is a local minimum of the potential energy `V(x)` subject to `c(x) = 0`. It is the limit of steps
+    /// of [`Method::ImplicitEuler`] that begin at rest and grow: each minimises `|x - x_k|_M^2 / 2 + h_k^2
+    /// V(x)`, the proximal point method (R. T. Rockafellar, SIAM J. Control Optim. 14, 1976), and the inertia
+    /// vanishes with growing `h_k`. The search ends where forces are balanced to a millionth of the largest,
+    /// a step changes the energy by a millionth of it at most (what friction holds creeps, and is excepted),
+    /// and no small disturbance grows. The time says which loads and supports are meant. Drag and dampers
+    /// have no place. Friction acts against the displacement in each of these steps, with the sliding that
+    /// counts as rest in the first of them.
+    Equilibrium(ImplicitOptions),
     /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:
     ///
@@ -77,7 +93,10 @@ pub enum Method {
 impl Method {
     /// Whether a step is a minimum of an incremental potential, which needs no rods.
     pub(crate) fn is_minimising(&self) -> bool {
-        matches!(self, Self::ImplicitEuler(_) | Self::Bdf2(_))
+        matches!(
+            self,
+            Self::ImplicitEuler(_) | Self::Bdf2(_) | Self::Equilibrium(_)
+        )
     }
 
     /// Validates the options and analyses the model.
@@ -94,6 +113,10 @@ impl Method {
             Self::Bdf2(o) => {
                 o.validate()?;
                 Box::new(Implicit::new(Formula::TwoStep, model, o, tuning)?)
+            }
+            Self::Equilibrium(o) => {
+                o.validate()?;
+                Box::new(Equilibrium::new(model, o, tuning)?)
             }
             Self::EnergyMomentum(o) => {
                 o.validate()?;

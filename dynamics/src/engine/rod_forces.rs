@@ -11,7 +11,7 @@ impl Method {
     /// step, RATTLE that over its first half, both compressive.
     fn density_of_multipliers(&self, h: f64) -> f64 {
         match self {
-            Self::ImplicitEuler(_) | Self::Bdf2(_) => 1.0 / (h * h),
+            Self::ImplicitEuler(_) | Self::Bdf2(_) | Self::Equilibrium(_) => 1.0 / (h * h),
             Self::EnergyMomentum(_) => -1.0 / h,
             Self::Rattle(_) | Self::RattleComposition(_) => -2.0 / h,
         }

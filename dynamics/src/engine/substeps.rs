@@ -118,7 +118,10 @@ impl Engine {
             integrator,
             control,
             tuning,
-            objective: Objective::new(&model),
+            objective: match method {
+                Method::Equilibrium(_) => Objective::at_rest(&model),
+                _ => Objective::new(&model),
+            },
             breaks: model.breaks.clone(),
             method,
             fixed,
@@ -410,6 +413,7 @@ impl Substeps<'_, '_> {
             StepError::NonFiniteForce { .. }
                 | StepError::Potential { .. }
                 | StepError::FrictionLaw { .. }
+                | StepError::NoEquilibrium { .. }
         ) {
             return Stop::Error(cause);
         }
@@ -568,6 +572,26 @@ impl Substeps<'_, '_> {
                 accuracy,
             });
         }
+        if let Some(settled) = proposal.settled {
+            // Whatever energy an equilibrium has less than its start and what was given is lost on the way.
+            let memories = [&motion.memories, &proposal.motion.memories];
+            let ends = [before, after].map(|s| (s.t, &s.x[..]));
+            let [first, last] =
+                [0, 1].map(|i| model.energy_with(memories[i], ends[i].0, ends[i].1));
+            let driven = match model.has_driven_potentials() {
+                true => model.potential_work(memories[0], ends[0], ends[1]),
+                false => 0.0,
+            };
+            let given = exchange.work + exchange.driven + driven + settled.work - exchange.stored;
+            let lost = first + model.kinetic_energy(&before.v) + given
+                - last
+                - exchange.friction
+                - settled.dissipated;
+            check_energy(model, &proposal.motion.memories, after)?;
+            proposal.account.damped = lost.max(0.0);
+            proposal.motion.account = motion.account;
+            return Ok(());
+        }
         // The conservative methods keep the energy by themselves.
         let damps = integrator.traits().demand == RodDemand::Nothing || is_fallback;
         let account = match damps {
@@ -701,6 +725,7 @@ impl Substeps<'_, '_> {
                 | StepError::Body(_)
                 | StepError::Interrupted { .. }
                 | StepError::Locked { .. }
+                | StepError::NoEquilibrium { .. }
         ) {
             return Decision::Stop(Stop::Error(refusal));
         }
@@ -724,9 +749,9 @@ impl Substeps<'_, '_> {
     fn commit(&mut self, h: f64) {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.exchange);
+        let settled = engine.proposal.settled.take();
         std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
         let (model, before, motion) = (&engine.model, &engine.proposal.motion, &mut engine.motion);
-        motion.memories.copy_from(&before.memories);
         motion.has_moved = true;
         if let (Some(error), Some(accuracy)) = (step.error, engine.control.accuracy) {
             let growth = if error.of_twice() <= accuracy {
@@ -743,11 +768,12 @@ impl Substeps<'_, '_> {
         let totals = &mut *self.totals;
         if model.has_driven_potentials() {
             let ends = [&before.state, &motion.state].map(|s| (s.t, &s.x[..]));
-            totals.work += model.potential_work(&motion.memories, ends[0], ends[1]);
+            totals.work += model.potential_work(&before.memories, ends[0], ends[1]);
         }
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
+        totals.lowest_frequency = step.lowest_frequency;
         if let Some(error) = step.error {
             totals.error = Some(totals.error.unwrap_or(0.0).max(error.size));
         }
@@ -755,7 +781,10 @@ impl Substeps<'_, '_> {
         totals.friction += exchange.friction;
         totals.dissipated += step.damped;
         motion.account.spend(step.damped);
-        let settled = model.settle(&motion.state, &mut motion.memories);
+        let settled = settled.unwrap_or_else(|| {
+            motion.memories.copy_from(&before.memories);
+            model.settle(&motion.state, &mut motion.memories)
+        });
         totals.plastic += settled.dissipated;
         totals.work += settled.work;
         if self.proposer == Proposer::Fallback {

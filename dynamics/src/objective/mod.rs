@@ -66,6 +66,14 @@ impl Objective {
         }
     }
 
+    /// Of a model at rest, without contact: without the terms of forces that depend on velocities.
+    pub(crate) fn at_rest(model: &Arc<SheetModel>) -> Self {
+        Self {
+            others: Vec::new(),
+            ..Self::new(model)
+        }
+    }
+
     /// Adds a term before those of implicit forces, or puts it in the place of the one of its type.
     pub(crate) fn set<T: Term>(&mut self, term: T) {
         self.others.retain(|other| !is::<T>(&**other));

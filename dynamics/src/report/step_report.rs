@@ -46,6 +46,10 @@ pub struct StepReport {
     /// See
     /// [`StepControl::accuracy`](crate::StepControl::accuracy).
     pub error: Option<f64>,
+    /// The lowest frequency of small free vibrations about the equilibrium at the end, hertz, of
+    /// [`Method::Equilibrium`](crate::Method::Equilibrium); `None` for other methods, and where the sheet can
+    /// move without a force or was not found to be stable.
+    pub lowest_frequency: Option<f64>,
     /// Kinetic energy at the end, joules.
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.

@@ -699,6 +699,7 @@ impl Simulation {
             factorisations: totals.effort.factorisations,
             residual: totals.residual,
             error: totals.error,
+            lowest_frequency: totals.lowest_frequency,
             kinetic,
             potential,
             work,

@@ -9,7 +9,7 @@ use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::{SheetModel, State};
-use isosheet_materials::potential::Memories;
+use isosheet_materials::potential::{Memories, Settled};
 use isosheet_model::StepError;
 use isosheet_model::term::Exchange;
 
@@ -27,6 +27,9 @@ pub(crate) struct Proposal {
     pub(crate) motion: Motion,
     /// What it would achieve.
     pub(crate) account: StepAccount,
+    /// What it did to what potentials remember, which is in the motion then; nothing where that is left to
+    /// the commit.
+    pub(crate) settled: Option<Settled>,
 }
 
 /// What a proposed sub-step achieves.
@@ -42,6 +45,8 @@ pub(crate) struct StepAccount {
     pub(crate) damped: f64,
     /// The estimated error of the positions, by methods that have an estimate.
     pub(crate) error: Option<LocalError>,
+    /// The lowest frequency about an equilibrium, hertz.
+    pub(crate) lowest_frequency: Option<f64>,
 }
 
 impl Proposal {
@@ -51,6 +56,7 @@ impl Proposal {
         Self {
             motion: Motion::at(nowhere, model, traits.balance(model)),
             account: StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton),
+            settled: None,
         }
     }
 }
@@ -67,6 +73,7 @@ impl StepAccount {
             },
             damped: 0.0,
             error: None,
+            lowest_frequency: None,
         }
     }
 }
@@ -95,6 +102,8 @@ pub(crate) enum Phases {
     Brief,
     /// All of them.
     All,
+    /// All, by a search that takes where their iterations have come to when they are used up.
+    Search,
 }
 
 /// How much of the history a sub-step begins with. Each refusal of a sub-step takes away from it.

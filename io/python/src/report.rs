@@ -61,6 +61,9 @@ values_of! {
         /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean
         /// square over the vertices; None for methods without an estimate.
         error: Option<f64> = report.error;
+        /// The lowest frequency of small vibrations about the equilibrium of `integrator = "static"`, hertz;
+        /// None where the sheet can move without a force, and for other methods.
+        lowest_frequency: Option<f64> = report.lowest_frequency;
         /// Largest relative residual of the sub-steps.
         residual: f64 = report.residual;
         /// Kinetic energy at the end.

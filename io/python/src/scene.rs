@@ -168,6 +168,13 @@ impl Scene {
         file.map(Self::of).map_err(|e| of_file(py, &e))
     }
 
+    /// The scene without motion: its steps end at equilibria, one step where nothing depends on time.
+    fn at_rest(&self, py: Python<'_>) -> PyResult<Self> {
+        let (scene, keys) = self.file.scene().at_rest();
+        let file = self.file.changed(scene, keys);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
     /// The scene of a text, as if it had been read from a path.
     #[staticmethod]
     fn _of_text(py: Python<'_>, text: String, path: PathBuf) -> PyResult<Self> {

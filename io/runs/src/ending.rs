@@ -21,6 +21,7 @@ impl RunWriter {
             potential: report.potential,
             plastic: dissipated(under_way.simulation.model(), report.plastic),
             energy_drift: report.energy_drift,
+            lowest_frequency: report.lowest_frequency,
             taut: report.taut.as_ref().map(|demand| {
                 let origins = &under_way.facts.origins;
                 demand.named(|body| format!("`{}`", origins.obstacle_called(body)))
@@ -47,6 +48,7 @@ impl RunWriter {
                 .iter()
                 .map(|load| load.force)
                 .collect(),
+            lowest_frequency: None,
             taut: None,
             failed: None,
             kept: self.progress.kept.of_yielded(),

@@ -115,6 +115,9 @@ pub struct Ending {
     pub energy_drift: f64,
     /// Largest speed of a vertex, m/s.
     pub largest_speed: f64,
+    /// The lowest frequency of small free vibrations about an equilibrium, hertz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lowest_frequency: Option<f64>,
     /// Force of each support of the scene on the sheet, newtons.
     pub supports: Vec<[f64; 3]>,
     /// Force of the sheet on each obstacle of the scene, newtons.

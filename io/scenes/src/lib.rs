@@ -149,6 +149,7 @@ mod whole {
     pub(crate) mod names;
     pub(crate) mod periods;
     pub(crate) mod selections;
+    mod static_scene;
     pub(crate) mod step_path;
     pub(crate) mod switches;
     pub(crate) mod turning_back;
@@ -430,6 +431,13 @@ impl Scene {
 
     /// Sheets without rods need a method whose steps are minima, contact such a method or a chart.
     fn check_method_fits(&self, checks: &mut Checks) {
+        if self.method.integrator == Integrator::Static && !self.body.is_empty() {
+            checks.report(
+                Key::root().name("method.integrator"),
+                "rigid bodies that move by themselves have no place in a search for an equilibrium",
+                "make them obstacles (`[[obstacle]]`), or choose `bdf2`",
+            );
+        }
         if self.method.integrator.is_minimising() {
             return;
         }

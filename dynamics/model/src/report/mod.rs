@@ -3,6 +3,7 @@
 pub(crate) mod contact_error;
 pub(crate) mod engine_error;
 pub(crate) mod infeasibility;
+pub(crate) mod no_equilibrium;
 pub(crate) mod potential_fault;
 pub(crate) mod pressing;
 pub(crate) mod reason;

@@ -3,6 +3,7 @@
 use crate::report::contact_error::{BodyMotionError, FrictionError};
 use crate::report::engine_error::EngineError;
 use crate::report::infeasibility::Infeasibility;
+use crate::report::no_equilibrium::NoEquilibrium;
 use crate::report::potential_fault::BadPotential;
 use crate::report::pressing::Pressing;
 use crate::report::reason::Reason;
@@ -190,6 +191,14 @@ pub enum StepError {
         h: f64,
         /// The difference, as a part of the largest load.
         error: f64,
+    },
+    /// The search for an equilibrium cannot end, see [`NoEquilibrium`].
+    #[error("there is no equilibrium at t = {t} s: {why}", t = brief(*t))]
+    NoEquilibrium {
+        /// Time, seconds.
+        t: f64,
+        /// Why.
+        why: NoEquilibrium,
     },
     /// A [term](crate::term::Term) refuses a step for a reason of its own.
     #[error("{} refuses a step at t = {t} s: {}", .refused.by, .refused.why, t = brief(*t))]
@@ -401,6 +410,7 @@ impl Advice for StepError {
             | Self::Inaccurate { .. }
             | Self::Friction { .. }
             | Self::Contact { .. } => Some("take a smaller step"),
+            Self::NoEquilibrium { why, .. } => Some(why.advice()),
             Self::Refused { refused, .. } => refused.remedy,
             Self::Potential { bad, .. } => bad.advice(),
             Self::FrictionLaw { error, .. } => error.advice(),

@@ -33,6 +33,27 @@ pub(super) const OPERATIONS: f64 = 8.0;
 /// far below the stiffness along the surface.
 const SUPPORT_STIFFNESS: f64 = 1e6;
 
+/// Most steps of the inverse iteration for the least eigenvalue. Two modes whose frequencies are a hundredth
+/// apart are told by it to 1e-4 of the lower one.
+const INVERSE_ITERATIONS: usize = 200;
+
+/// Change of the eigenvalue from one step to the next at which the iteration ends, relative.
+const EIGENVALUE_ACCURACY: f64 = 1e-6;
+
+/// Whether a sheet stays at an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Stability {
+    /// A disturbance grows.
+    Unstable,
+    /// It can move without a force.
+    Free,
+    /// Each disturbance swings.
+    Stable {
+        /// Lowest frequency of free vibrations, hertz.
+        frequency: f64,
+    },
+}
+
 /// The augmented Lagrangian at an iterate,
 ///
 /// ```text
@@ -535,12 +556,13 @@ impl Lagrangian {
     }
 
     /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be
-    /// exactly flat, where one direction of negative curvature is not enough.
-    pub(super) fn perturb(&mut self, problem: &mut StepProblem<'_>, seed: u64) {
+    /// exactly flat, where one direction of negative curvature is not enough; by `part` of the shortest edge
+    /// at each vertex at most.
+    pub(super) fn perturb(&mut self, problem: &mut StepProblem<'_>, seed: u64, part: f64) {
         let model = problem.model;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         for (i, d) in self.dx.iter_mut().enumerate() {
-            let size = self.tuning.perturbation * model.shortest_edge(i / 3);
+            let size = part * model.shortest_edge(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
@@ -590,6 +612,76 @@ impl Lagrangian {
         }
         self.merit(problem);
         false
+    }
+
+    /// Makes the multipliers those of the same forces in steps that are so many times as long.
+    pub(super) fn scale_multipliers(&mut self, longer: f64) {
+        let ratio = longer * longer;
+        self.multipliers.iter_mut().for_each(|l| *l *= ratio);
+        let constraints = self.vertex_rows.multipliers.iter_mut();
+        constraints.for_each(|l| *l *= ratio);
+    }
+
+    /// Whether the Hessian at the iterate is positive definite, and its least eigenvalue in the metric of the
+    /// masses by inverse iteration: the square of the frequency times that of the step, and one more, the
+    /// inertia.
+    pub(super) fn stability(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        seed: u64,
+        effort: &mut SolverEffort<'_>,
+    ) -> Stability {
+        self.set_gradient(problem);
+        let full = self.factorize(problem, RowLoad::Multipliers, HessianPart::Full, effort);
+        if !matches!(full, Ok(Definiteness::Definite)) {
+            return Stability::Unstable;
+        }
+        let Some(least) = self.least_eigenvalue(problem.model, seed, effort) else {
+            return Stability::Free;
+        };
+        let without = least - 1.0;
+        match without > EIGENVALUE_ACCURACY * least {
+            true => Stability::Stable {
+                frequency: without.sqrt() / (std::f64::consts::TAU * problem.h()),
+            },
+            false => Stability::Free,
+        }
+    }
+
+    /// The least eigenvalue of the matrix that was factorised last; nothing where the iteration breaks down.
+    fn least_eigenvalue(
+        &mut self,
+        model: &SheetModel,
+        seed: u64,
+        effort: &mut SolverEffort<'_>,
+    ) -> Option<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for d in &mut self.dx {
+            *d = rng.random_range(-1.0..=1.0);
+        }
+        model.clear_pinned(&mut self.dx);
+        let mut least = f64::INFINITY;
+        for _ in 0..INVERSE_ITERATIONS {
+            model.apply_mass(&self.dx, &mut self.weighted);
+            model.clear_pinned(&mut self.weighted);
+            let (b, dx) = (&self.weighted, &mut self.dx);
+            self.matrix.solve_whole(model, b, dx, effort).ok()?;
+            // With K y = M v: the quotient of y is v.M.y over y.M.y.
+            let product = dot(&self.dx, &self.weighted);
+            model.apply_mass(&self.dx, &mut self.difference);
+            let quotient = product / dot(&self.dx, &self.difference);
+            let largest = norm_inf(&self.dx);
+            self.dx.iter_mut().for_each(|d| *d /= largest);
+            if !quotient.is_finite() {
+                return None;
+            }
+            let is_settled = (least - quotient).abs() <= EIGENVALUE_ACCURACY * quotient;
+            least = quotient;
+            if is_settled {
+                break;
+            }
+        }
+        Some(least)
     }
 
     /// Sets `dx`, of largest component one, to a direction of negative curvature; whether there is one.

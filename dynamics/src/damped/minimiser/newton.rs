@@ -10,6 +10,7 @@ use crate::linear::constrained::MultiplierGoal;
 use crate::linear::constraint_rows::RowLoad;
 use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
+use crate::step::integrator::Phases;
 use isosheet_materials::hessian::HessianPart;
 use isosheet_model::Reason;
 use isosheet_model::StepError;
@@ -18,6 +19,8 @@ use isosheet_model::{Continuation, Cut, TraceEvent};
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Minimum {
+    /// Whether it is one: a search also takes iterates from which it was still to go down.
+    pub(crate) has_converged: bool,
     /// Relative Newton decrement before the last iteration.
     pub(crate) residual: f64,
     /// What it took.
@@ -163,11 +166,20 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 return Ok(self.minimum());
             }
         }
-        Err(Reason::Iterations)
+        let may_end =
+            self.problem.phases == Phases::Search && !self.work.lagrangian.is_driven(self.problem);
+        match may_end && self.finish()? {
+            true => Ok(Minimum {
+                has_converged: false,
+                ..self.minimum()
+            }),
+            false => Err(Reason::Iterations),
+        }
     }
 
     fn minimum(&self) -> Minimum {
         Minimum {
+            has_converged: true,
             residual: self.residual,
             outcome: self.outcome,
         }
@@ -573,6 +585,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian,
             options,
             tolerance,
+            tuning,
             ..
         } = &mut *self.work;
         match self.phase.saddle {
@@ -583,7 +596,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             }
             Saddle::Perturbation => {
                 self.outcome = StepOutcome::BranchSeeded;
-                lagrangian.perturb(self.problem, options.seed);
+                lagrangian.perturb(self.problem, options.seed, tuning.perturbation);
                 lagrangian.merit(self.problem);
                 true
             }

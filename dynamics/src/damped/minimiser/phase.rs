@@ -97,6 +97,9 @@ pub(super) struct Phase {
     pub(super) saddle: Saddle,
 }
 
+/// Most iterations of a phase in a step of a search for an equilibrium.
+const SEARCH_ITERATIONS: usize = 30;
+
 impl Phase {
     /// The phases of a problem, in the order in which they are tried until one ends at a minimum.
     ///
@@ -123,6 +126,14 @@ impl Phase {
     ) -> [Option<Self>; 2] {
         let model = problem.model;
         let has_contact = problem.has_contact();
+        let search = ImplicitOptions {
+            max_iterations: options.max_iterations.min(SEARCH_ITERATIONS),
+            ..options.clone()
+        };
+        let options = match problem.phases {
+            Phases::Search => &search,
+            Phases::Brief | Phases::All => options,
+        };
         let sqp = Self::sqp(problem, options, tuning);
         let rounds = Self::rounds(problem, options, tuning);
         if model.rods().is_empty() {

@@ -35,6 +35,7 @@ fn step<'a>(state: &'a State, memories: &'a Memories, prediction: &'a [f64]) -> 
         state,
         memories,
         span: H,
+        sliding_time: H,
         h: H,
         formula: Formula::OneStep,
         back: 0.0,
@@ -308,7 +309,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
                 minimiser.work.lagrangian.matrix.leave_iteration();
             }
             let memories = model.memories();
-            let problem = StepProblem {
+            let mut problem = StepProblem {
                 model,
                 memories: &memories,
                 objective: &mut Objective::new(model),
@@ -316,7 +317,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
                 phases: Phases::All,
             };
             let mut effort = SolverEffort::default();
-            minimiser.minimise(problem, &mut effort).unwrap();
+            minimiser.minimise(&mut problem, &mut effort).unwrap();
             assert_eq!(
                 minimiser.work.lagrangian.matrix.is_iterative(),
                 is_iterative

@@ -443,6 +443,7 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         exchange,
         damped,
         error,
+        lowest_frequency,
     } = proposal.account;
     let exchange = [
         exchange.work,
@@ -452,7 +453,8 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         exchange.length_slack,
         damped,
     ];
-    let account = (residual, outcome, exchange, error.map(|error| error.size));
+    let error = error.map(|error| error.size);
+    let account = (residual, outcome, exchange, error, lowest_frequency);
     Ok(bits(&(&proposal.motion.compact(), account)))
 }
 

@@ -250,6 +250,7 @@ impl Origins {
                     ..self.of_step(cause)
                 };
             }
+            StepError::NoEquilibrium { why, .. } => (root.name("method.integrator"), why.advice()),
             StepError::NotConverged { reason, .. } => remedy_of(*reason),
             StepError::Friction { .. } => (
                 root.name("contact"),

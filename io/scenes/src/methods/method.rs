@@ -64,6 +64,9 @@ pub enum Integrator {
     Bdf2,
     /// First order, strongly damped, takes any state, contact and isometry.
     ImplicitEuler,
+    /// No motion: each step ends at an equilibrium under the loads and supports of its end, with any contact
+    /// and isometry, but without wind.
+    Static,
     /// Second order, conserves energy and momenta; rods without contact.
     EnergyMomentum,
     /// Second order, symplectic; rods without contact.
@@ -121,7 +124,7 @@ impl Default for MethodKey {
 impl Integrator {
     /// Whether steps are minima of an incremental potential: then contact and elastic sheets have a place.
     pub(crate) fn is_minimising(self) -> bool {
-        matches!(self, Self::Bdf2 | Self::ImplicitEuler)
+        matches!(self, Self::Bdf2 | Self::ImplicitEuler | Self::Static)
     }
 }
 
@@ -131,7 +134,7 @@ impl MethodKey {
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
         if let Some(accuracy) = self.accuracy {
             checks.positive(key.name("accuracy"), accuracy, Unit::Metre);
-            if !self.integrator.is_minimising() {
+            if !self.integrator.is_minimising() || self.integrator == Integrator::Static {
                 checks.report(
                     key.name("accuracy"),
                     "this integrator does not estimate the errors of its steps",
@@ -219,6 +222,7 @@ impl MethodKey {
             }
             Integrator::Bdf2 => engine::Method::Bdf2(self.implicit()),
             Integrator::ImplicitEuler => engine::Method::ImplicitEuler(self.implicit()),
+            Integrator::Static => engine::Method::Equilibrium(self.implicit()),
             Integrator::EnergyMomentum => {
                 let usual = EnergyMomentumOptions::default();
                 engine::Method::EnergyMomentum(EnergyMomentumOptions {

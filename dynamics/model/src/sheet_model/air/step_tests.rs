@@ -92,6 +92,7 @@ impl Scene {
             state: &self.start,
             memories: &self.memories,
             span: SPAN,
+            sliding_time: SPAN,
             h: H,
             formula: Formula::TwoStep,
             back: 0.0,

@@ -74,6 +74,7 @@ fn the_term_follows_the_load() {
         state: &start,
         memories: &memories,
         span: 0.02,
+        sliding_time: 0.02,
         h: 0.02,
         formula: Formula::OneStep,
         back: 0.0,
