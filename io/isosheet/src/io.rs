@@ -1,10 +1,13 @@
-//! Files, and with features scenes, runs, pictures and the command.
+//! With features: files, scenes, runs, pictures and the command.
 
+#[cfg(feature = "files")]
 pub use isosheet_drawings::DrawnLines;
+#[cfg(feature = "files")]
 pub use isosheet_files::{
     DataError, FileError, FileWriter, ReadError, WriteError, read_json, write_atomically,
     write_json,
 };
+#[cfg(feature = "files")]
 pub use isosheet_formats::{
     BodyPose, EdgeAssignment, EventChange, EventKind, EventRow, EventWriter, ExportError,
     ExportMeshFormat, Exported, FaceGroups, FieldSupport, FileCrease, FoldFrame, FrameData,
@@ -18,6 +21,7 @@ pub use isosheet_formats::{
 pub use isosheet_mesh::Advice;
 
 /// Drawings of sheets: lines with colours, dashes and layers, and the meshes that follow them.
+#[cfg(feature = "files")]
 pub mod drawing {
     pub use isosheet_drawings::{
         ClassCount, Colour, Drawing, DrawingFormat, DrawingOptions, DrawingReport, DrawingUnit,

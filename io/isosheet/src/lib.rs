@@ -2,7 +2,8 @@
 //!
 //! # More than these lines
 //!
-//! - Meshes of files or of one's own triangles: [`io::read_sheet`], [`mesh::Sheet::new`].
+//! - Meshes of one's own triangles: [`mesh::Sheet::new`]; of files, with the feature `files`:
+//!   `io::read_sheet`.
 //! - Materials of one's own: [`dynamics::Material`]. Rods in place of an elastic sheet, creases, and bends
 //!   that stay: [`dynamics::SheetOfMaterial`].
 //! - Supports that move, vertices on curves and surfaces: [`dynamics::SheetModel::with_moving_pin`],
@@ -19,7 +20,7 @@
 //! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
 //!   [`dynamics::Simulation::contact_forces`].
 //! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`charts`].
-//! - Meshes and series of frames as files: [`io::write_mesh`], [`io::write_series`].
+//! - Meshes and series of frames as files, with the feature `files`: `io::write_mesh`, `io::write_series`.
 //! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run`
 //!   and `io::command`.
 //!
@@ -47,6 +48,7 @@ pub mod prelude {
         SheetModel, Simulation, State, StepError, StepReport, Support, VertexConstraint,
         VertexLoad,
     };
+    #[cfg(feature = "files")]
     pub use isosheet_formats::{read_sheet, write_mesh, write_series};
     pub use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, Sheet, VertexId, generate};
 }
