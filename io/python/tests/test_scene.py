@@ -245,3 +245,11 @@ def test_a_scene_is_made_of_keyword_arguments():
         isosheet.Scene()
     with pytest.raises(TypeError):
         isosheet.Scene(TRIANGLE)
+
+
+def test_a_scene_at_rest_ends_at_an_equilibrium(tmp_path):
+    scene = isosheet.Scene.new("clamp").at_rest()
+    assert scene["method.integrator"] == "static"
+    run = scene.simulate(tmp_path / "rest")
+    assert run.summary["steps"] == 1
+    assert run.summary["ending"]["lowest_frequency"] > 0

@@ -28,6 +28,7 @@ mod live_page;
 mod measures;
 mod pages;
 mod recording;
+mod rest;
 mod rod_forces;
 mod rulings;
 mod sequences;

@@ -31,7 +31,7 @@ pub(crate) fn scenes() -> Vec<SceneFile> {
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"rising\" } }",
     ];
     let with = |key: &str, value: &str| format!("{key}={value}");
-    let integrators = ["energy_momentum", "rattle_composition"];
+    let integrators = ["energy_momentum", "rattle_composition", "static"];
     let edits = meshes.iter().map(|m| with("sheet.mesh", m));
     let edits = edits.chain(integrators.iter().map(|i| with("method.integrator", i)));
     let charts = [
