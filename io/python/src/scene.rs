@@ -172,7 +172,7 @@ impl Scene {
     fn at_rest(&self, py: Python<'_>) -> PyResult<Self> {
         let (scene, keys) = self.file.scene().at_rest();
         let file = self.file.changed(scene, keys);
-        file.map(Self::of).map_err(|e| of_file(py, &e))
+        file.map(Self::of).map_err(|e| of_file(py, &e.into()))
     }
 
     /// The scene of a text, as if it had been read from a path.
