@@ -11,7 +11,7 @@ mod near;
 mod net;
 mod outline;
 mod refine;
-mod vec2;
+pub mod vec2;
 
 pub use curve::{EllipticArc, PlaneCurve};
 pub use error::{Gap, PlaneError};

@@ -146,13 +146,8 @@ impl Minimiser {
             remembered,
             ..
         } = &mut self.work;
-        let ratio = longer * longer;
-        for (m, l) in remembered.iter_mut().zip(&lagrangian.multipliers) {
-            *m = ratio * l;
-        }
-        for l in &mut lagrangian.vertex_rows.multipliers {
-            *l *= ratio;
-        }
+        lagrangian.scale_multipliers(longer);
+        remembered.copy_from_slice(&lagrangian.multipliers);
     }
 
     /// Forgets the multipliers.

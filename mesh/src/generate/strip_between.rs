@@ -242,20 +242,18 @@ impl Pairs {
         let cost = |i: usize, j: usize| self.cost(&rows[i], &columns[j]);
         let width = n + 1;
         let mut sums = vec![f64::INFINITY; width * width];
+        // The sums at the two cells from which the way may come.
+        let before = |sums: &[f64], i: usize, j: usize| {
+            let at = |i: Option<usize>, j: Option<usize>| {
+                i.zip(j).map_or(f64::INFINITY, |(i, j)| sums[i * width + j])
+            };
+            [at(i.checked_sub(1), Some(j)), at(Some(i), j.checked_sub(1))]
+        };
         sums[0] = cost(0, 0);
         for i in 0..=n {
             for j in 0..=n {
                 if i + j > 0 {
-                    let left = if i > 0 {
-                        sums[(i - 1) * width + j]
-                    } else {
-                        f64::INFINITY
-                    };
-                    let below = if j > 0 {
-                        sums[i * width + j - 1]
-                    } else {
-                        f64::INFINITY
-                    };
+                    let [left, below] = before(&sums, i, j);
                     sums[i * width + j] = left.min(below) + cost(i, j);
                 }
             }
@@ -263,16 +261,7 @@ impl Pairs {
         let (mut i, mut j) = (n, n);
         let mut way = vec![n];
         while i + j > 0 {
-            let left = if i > 0 {
-                sums[(i - 1) * width + j]
-            } else {
-                f64::INFINITY
-            };
-            let below = if j > 0 {
-                sums[i * width + j - 1]
-            } else {
-                f64::INFINITY
-            };
+            let [left, below] = before(&sums, i, j);
             (i, j) = if left <= below {
                 (i - 1, j)
             } else {

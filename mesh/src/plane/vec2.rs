@@ -1,30 +1,35 @@
-//! The few vector operations that drawings need, on `[f64; 2]`.
+//! The few vector operations that drawings and layouts need, on `[f64; 2]`.
 
-pub(super) type Point = [f64; 2];
+/// A point of the plane, or a vector.
+pub type Point = [f64; 2];
 
-pub(super) fn sub(a: Point, b: Point) -> Point {
+/// `a - b`.
+pub fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-pub(super) fn dot(a: Point, b: Point) -> f64 {
+/// The scalar product.
+pub fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-pub(super) fn cross(a: Point, b: Point) -> f64 {
+/// The component of the vector product along the normal of the plane.
+pub fn cross(a: Point, b: Point) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-pub(super) fn distance(a: Point, b: Point) -> f64 {
+/// The distance of two points.
+pub fn distance(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The point at the part `w` of the way from `a` to `b`; the ends exactly.
-pub(super) fn between(a: Point, b: Point, w: f64) -> Point {
+pub fn between(a: Point, b: Point, w: f64) -> Point {
     [0, 1].map(|k| (1.0 - w) * a[k] + w * b[k])
 }
 
 /// The part of the way from `a` to `b` that is nearest to `p`.
-pub(super) fn foot(p: Point, [a, b]: [Point; 2]) -> f64 {
+pub fn foot(p: Point, [a, b]: [Point; 2]) -> f64 {
     let d = sub(b, a);
     let square = dot(d, d);
     match square > 0.0 {
