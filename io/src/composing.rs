@@ -103,7 +103,7 @@ impl Composing {
     /// The folder of the run of a file.
     fn folder(&self, of: &Path) -> PathBuf {
         let given = self.out.as_ref().or(self.old_out.as_ref());
-        given.cloned().unwrap_or_else(|| default_folder(of))
+        given.cloned().unwrap_or_else(|| default_folder(of, "run"))
     }
 
     /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be

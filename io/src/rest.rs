@@ -1,7 +1,7 @@
 //! `isosheet rest`.
 
 use super::failure::{Done, Failure};
-use super::simulate::{How, existing};
+use super::simulate::{How, default_folder, existing};
 use clap::Args;
 use isosheet_runs::RunError;
 use isosheet_scenes::SceneFile;
@@ -48,10 +48,8 @@ impl RestArgs {
         let (scene, keys) = file.scene().at_rest();
         let still = file.changed(scene, keys);
         let still = still.map_err(|error| Failure::from(RunError::Scene(error)))?;
-        let folder = self.out.clone().unwrap_or_else(|| {
-            let name = self.scene.file_stem().unwrap_or_default().to_string_lossy();
-            PathBuf::from(format!("{name}-rest"))
-        });
+        let default = || default_folder(&self.scene, "rest");
+        let folder = self.out.clone().unwrap_or_else(default);
         self.how.prepare()?;
         self.how.show_scene(&still, &folder, existing(self.force))
     }

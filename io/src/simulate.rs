@@ -235,16 +235,17 @@ impl Simulate {
         let folder = self
             .out
             .clone()
-            .unwrap_or_else(|| default_folder(&self.scene));
+            .unwrap_or_else(|| default_folder(&self.scene, "run"));
         self.how.prepare()?;
         self.how.show_scene(&scene, &folder, existing(self.force))
     }
 }
 
-/// The folder of a scene without `--out`: `drape-run` in the current folder for `scenes/drape.toml`.
-pub(super) fn default_folder(scene: &Path) -> PathBuf {
+/// The folder of a scene without `--out`: `drape-run` in the current folder for `scenes/drape.toml`, and what
+/// it is of, `run`.
+pub(super) fn default_folder(scene: &Path, of: &str) -> PathBuf {
     let name = scene.file_stem().unwrap_or_default().to_string_lossy();
-    PathBuf::from(format!("{name}-run"))
+    PathBuf::from(format!("{name}-{of}"))
 }
 
 impl Resume {

@@ -2,6 +2,7 @@
 
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_progress};
+use super::simulate::default_folder;
 use super::workers;
 use super::write::to_stdout;
 use clap::{Args, ValueEnum};
@@ -75,7 +76,9 @@ impl EngineName {
 
 impl SweepArgs {
     pub(crate) fn run(self, program: &Path) -> Done {
-        let folder = self.out.unwrap_or_else(|| default_folder(&self.scene));
+        let folder = self
+            .out
+            .unwrap_or_else(|| default_folder(&self.scene, "sweep"));
         let sweep = Sweep::new(&self.scene, &folder, self.edits, self.over)?;
         sweep.check()?;
         sweep.write(&word_for(program)?)?;
@@ -91,12 +94,6 @@ impl SweepArgs {
 /// The number of cores that the process may use; one where the system does not say.
 fn all_cores() -> NonZero<usize> {
     std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
-}
-
-/// The folder of a sweep without `--out`: `drape-sweep` in the current folder for `scenes/drape.toml`.
-fn default_folder(scene: &Path) -> PathBuf {
-    let name = scene.file_stem().unwrap_or_default().to_string_lossy();
-    PathBuf::from(format!("{name}-sweep"))
 }
 
 /// What a shell calls the program by: `isosheet` if that is the same program, its whole path otherwise.

@@ -12,6 +12,7 @@ use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_linalg::LinalgError;
 use isosheet_materials::potential::{Memories, Settled};
+use isosheet_materials::vectors::{diameter, largest_norm};
 use isosheet_model::NoEquilibrium;
 use isosheet_model::StepError;
 use isosheet_model::term::{Exchange, Formula, StepStart};
@@ -337,16 +338,21 @@ impl Equilibrium {
 }
 
 /// The acceleration that the forces which a step of `h` seconds from rest leaves would give, `|x1 - x0| /
-/// h^2`, the root of its mean square over the mass, m/s2.
+/// h^2`, m/s2.
 fn acceleration(model: &SheetModel, from: &[f64], to: &[f64], h: f64) -> f64 {
+    root_mean_square(model, |i, _| to[i] - from[i]) / (h * h)
+}
+
+/// The root of the mean square over the mass of vectors of the vertices. `component` has the number of a
+/// coordinate and the mass of its vertex.
+fn root_mean_square(model: &SheetModel, component: impl Fn(usize, f64) -> f64) -> f64 {
     let masses = model.mass().row_sums(model.topology());
-    let rows = from.as_chunks::<3>().0.iter().zip(to.as_chunks::<3>().0);
     let (mut squares, mut mass) = (0.0, 0.0);
-    for ((a, b), m) in rows.zip(masses) {
-        squares += m * (0..3).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>();
+    for (v, m) in masses.into_iter().enumerate() {
+        squares += m * (0..3).map(|k| component(3 * v + k, m).powi(2)).sum::<f64>();
         mass += m;
     }
-    (squares / mass).sqrt() / (h * h)
+    (squares / mass).sqrt()
 }
 
 /// The time in which the forces at the start of a search move the sheet from rest by a part of an edge,
@@ -361,31 +367,17 @@ fn first_step(model: &SheetModel, attempt: &Attempt<'_>) -> f64 {
     let mut force = vec![0.0; attempt.state.x.len()];
     let end = attempt.state.t + attempt.h;
     model.acting_force(attempt.memories, end, &attempt.state.x, &mut force);
-    let masses = model.mass().row_sums(model.topology());
-    let (mut squares, mut mass) = (0.0, 0.0);
-    for (f, m) in force.as_chunks::<3>().0.iter().zip(masses) {
-        squares += f.iter().map(|f| f * f).sum::<f64>() / m;
-        mass += m;
-    }
-    let acceleration = (squares / mass).sqrt();
+    let accelerations = |i: usize, m: f64| force[i] / m;
+    let acceleration = root_mean_square(model, accelerations);
     let h = (FIRST_PART * model.mean_length() / acceleration).sqrt();
     h.min(attempt.h)
 }
 
 /// Refuses a search that leads away without an end.
 fn check_held(start: &State, reached: &State) -> Result<(), StepError> {
-    let rows = start.x.as_chunks::<3>().0.iter();
-    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    let mut distance = 0.0_f64;
-    for (from, to) in rows.zip(reached.x.as_chunks::<3>().0) {
-        for k in 0..3 {
-            ends[0][k] = ends[0][k].min(from[k]);
-            ends[1][k] = ends[1][k].max(from[k]);
-            distance = distance.max((to[k] - from[k]).abs());
-        }
-    }
-    let size = (0..3).map(|k| ends[1][k] - ends[0][k]).fold(0.0, f64::max);
-    if distance <= UNHELD * size {
+    let moved: Vec<f64> = reached.x.iter().zip(&start.x).map(|(b, a)| b - a).collect();
+    let distance = largest_norm(&moved);
+    if distance <= UNHELD * diameter(&start.x) {
         return Ok(());
     }
     Err(StepError::NoEquilibrium {

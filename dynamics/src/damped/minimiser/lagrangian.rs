@@ -655,11 +655,7 @@ impl Lagrangian {
         seed: u64,
         effort: &mut SolverEffort<'_>,
     ) -> Option<f64> {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        for d in &mut self.dx {
-            *d = rng.random_range(-1.0..=1.0);
-        }
-        model.clear_pinned(&mut self.dx);
+        self.set_random_direction(model, seed);
         let mut least = f64::INFINITY;
         for _ in 0..INVERSE_ITERATIONS {
             model.apply_mass(&self.dx, &mut self.weighted);
@@ -691,11 +687,7 @@ impl Lagrangian {
         seed: u64,
         effort: &mut SolverEffort<'_>,
     ) -> bool {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        for d in &mut self.dx {
-            *d = rng.random_range(-1.0..=1.0);
-        }
-        model.clear_pinned(&mut self.dx);
+        self.set_random_direction(model, seed);
         let mut quotient = 0.0;
         for _ in 0..self.tuning.repetitions as usize {
             self.apply_pressure(model);
@@ -715,6 +707,15 @@ impl Lagrangian {
             self.dx.iter_mut().for_each(|d| *d /= largest);
         }
         quotient > 1.0
+    }
+
+    /// Sets `dx` to the direction that belongs to `seed`, of components up to one.
+    fn set_random_direction(&mut self, model: &SheetModel, seed: u64) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for d in &mut self.dx {
+            *d = rng.random_range(-1.0..=1.0);
+        }
+        model.clear_pinned(&mut self.dx);
     }
 
     /// Sets `weighted = N dx`, see [`Lagrangian::leave_saddle`].
