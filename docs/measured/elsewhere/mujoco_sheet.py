@@ -6,29 +6,13 @@ penetration and friction takes the place of the contact by penalties.
 """
 
 import os
-import resource
 import sys
 
 os.environ["OMP_NUM_THREADS"] = "1"
 
 import mujoco
 import numpy as np
-
-
-def cpu():
-    use = resource.getrusage(resource.RUSAGE_SELF)
-    return use.ru_utime + use.ru_stime
-
-
-def obj(path):
-    points, faces = [], []
-    for line in open(path):
-        words = line.split()
-        if words[0] == "v":
-            points.append([float(word) for word in words[1:]])
-        else:
-            faces.append([int(word) - 1 for word in words[1:]])
-    return np.array(points), np.array(faces)
+from sheet_program import cpu, obj
 
 
 def model(scene, points, faces, step, ipc):

@@ -6,29 +6,13 @@ all positions of every frame, in doubles. Gravity is 9.81 m/s2, which cannot be 
 """
 
 import os
-import resource
 import sys
 
 os.environ["OMP_NUM_THREADS"] = "1"
 
 import numpy as np
 import pypbd as pbd
-
-
-def cpu():
-    use = resource.getrusage(resource.RUSAGE_SELF)
-    return use.ru_utime + use.ru_stime
-
-
-def obj(path):
-    points, faces = [], []
-    for line in open(path):
-        words = line.split()
-        if words[0] == "v":
-            points.append([float(word) for word in words[1:]])
-        else:
-            faces.append([int(word) - 1 for word in words[1:]])
-    return np.array(points), np.array(faces)
+from sheet_program import cpu, obj
 
 
 def main():
