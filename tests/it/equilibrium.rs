@@ -174,6 +174,23 @@ fn what_has_no_equilibrium_is_refused() {
          stop.time = 1";
     let error = refusal(falling.into());
     assert!(error.contains("nothing stops it"), "{error}");
+    // Its middle sags until its ends slip off the blocks, after steps of very different lengths.
+    let slipping = "version = 1
+         sheet.mesh.rectangle = { width = 0.4, height = 0.05, columns = 40, rows = 5 }
+         sheet.material = \"polycarbonate film\"
+         sheet.start = { perturbation = 1e-3, seed = 1 }
+         forces.gravity = [0, 0, -9.81]
+         stop.time = 1
+         [[obstacle]]
+         shape.box.size = [0.06, 0.2, 0.02]
+         pose.position = [0.03, 0.025, -0.0105]
+         friction = 0.4
+         [[obstacle]]
+         shape.box.size = [0.06, 0.2, 0.02]
+         pose.position = [0.37, 0.025, -0.0105]
+         friction = 0.4";
+    let error = refusal(slipping.into());
+    assert!(error.contains("nothing stops it"), "{error}");
     let windy = strip(0.05, 9.81).replace("[[support]]", "air.wind = [1, 0, 0]\n[[support]]");
     let error = refusal(windy);
     assert!(error.contains("wind"), "{error}");
