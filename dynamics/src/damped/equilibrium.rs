@@ -195,8 +195,11 @@ impl Equilibrium {
             let after = energy(&memories, &state.x);
             let change = after - energy(&from.memories, &start.x) + exchange.stored - exchange.work;
             let changed = from.changed + change.abs();
-            // The residual is zero where a step can gain no more than round-off.
-            let is_none = change.abs() <= ENERGY_TOLERANCE * after.abs() || minimum.residual == 0.0;
+            // The residual is zero where the last iteration could gain no more than round-off.
+            let moved: Vec<f64> = state.x.iter().zip(&start.x).map(|(b, a)| b - a).collect();
+            let stays = largest_norm(&moved) <= ENERGY_TOLERANCE * diameter(&start.x);
+            let is_none =
+                change.abs() <= ENERGY_TOLERANCE * after.abs() || minimum.residual == 0.0 && stays;
             let is_balanced =
                 unbalanced <= TOLERANCE * largest || is_none && h >= lengths.longest();
             let size = changed.max(after.abs());
