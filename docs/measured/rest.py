@@ -2,12 +2,12 @@
 
 python3 docs/measured/rest.py ISOSHEET [CASE ...]   (ISOSHEET is the command, of an optimised build)
 
-A case is a scene and edits of it. The damped run is by implicit Euler with air that damps by 5 a second, until
-all vertices have been slower than 1e-5 m/s for a tenth of a second.
+A case is the text of a scene, the name of a file of xtask/scenes with the keys to change, or a kind of `isosheet new`.
+The damped run is by implicit Euler with air that damps by 5 a second, until all vertices have been slower than 1e-5 m/s
+for a tenth of a second.
 """
 
 import csv
-import re
 import resource
 import subprocess
 import sys
@@ -16,7 +16,6 @@ from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "xtask/scenes"
 
-# What holds the sheets of the scenes below.
 STRIP = """version = 1
 [sheet]
 mesh = {{ rectangle = {{ width = {width}, height = {height}, columns = {columns}, rows = {rows} }} }}
@@ -54,12 +53,8 @@ def body(shape, position, friction):
     return BODY.format(shape=shape, position=list(position), friction=friction)
 
 
-def scene(name, *edits):
-    return (name, edits)
-
-
-def level(n):
-    return (r"level = \d", f"level = {n}")
+def square(n):
+    return f"sheet.mesh.square.level={n}"
 
 
 CASES = {
@@ -74,8 +69,8 @@ CASES = {
         "office paper", 0.2, 0.2, 12, 12, corners((0, 0, 0), (0.2, 0, 0), (0.2, 0.2, 0), (0, 0.2, 0))
     ),
     "cotton that hangs by two corners": strip("cotton", 0.2, 0.2, 16, 16, corners((0, 0, 0), (0.2, 0, 0))),
-    "cloth that hangs by a corner, 81 vertices": scene("cost-hanging-elastic", level(2)),
-    "cloth that hangs by a corner, 289 vertices": scene("cost-hanging-elastic", level(3)),
+    "cloth that hangs by a corner, 81 vertices": ("cost-hanging-elastic", square(2)),
+    "cloth that hangs by a corner, 289 vertices": ("cost-hanging-elastic", square(3)),
     "film on a round table": "drape",
     "paper on a ball": strip(
         "office paper", 0.1, 0.1, 10, 10, body("{ sphere = { radius = 0.03 } }", (0.05, 0.05, -0.031), 0.3)
@@ -89,10 +84,10 @@ CASES = {
         corners((0, 0, 0)),
         body("{ sphere = { radius = 0.1 } }", (0.2, 0.2, -0.101), 0.0),
     ),
-    "disk of film on a ball, 631 vertices": scene("cost-ball", (r"rings = \d+", "rings = 14")),
-    "cloth on a ball and on itself, 289 vertices": scene("cloth-on-ball"),
-    "cloth on a table and on itself, 81 vertices": scene("cost-table-elastic", level(2)),
-    "cloth on a table and on itself, 289 vertices": scene("cost-table-elastic", level(3)),
+    "disk of film on a ball, 631 vertices": ("cost-ball", "sheet.mesh.disk.rings=14"),
+    "cloth on a ball and on itself, 289 vertices": ("cloth-on-ball",),
+    "cloth on a table and on itself, 81 vertices": ("cost-table-elastic", square(2)),
+    "cloth on a table and on itself, 289 vertices": ("cost-table-elastic", square(3)),
     "paper on a table, over its edge": strip(
         "office paper", 0.2, 0.04, 40, 8, body("{ box = { size = [0.12, 0.2, 0.02] } }", (0.06, 0.02, -0.0105), 0.4)
     ),
@@ -108,38 +103,33 @@ CASES = {
 }
 
 
-def text_of(case, folder, command):
+# The keys of a damped run.
+DAMPED = (
+    "sheet.damping=5.0",
+    'method.integrator="implicit_euler"',
+    "stop={ time = 120.0, rest = { speed = 1e-5, duration = 0.1 } }",
+)
+
+
+def scene_of(case, folder, command):
+    """The file of a case, and the keys that it changes."""
     if isinstance(case, tuple):
-        name, edits = case
-        text = (SCENES / f"{name}.toml").read_text()
-        for pattern, by in edits:
-            text = re.sub(pattern, by, text)
-        return text
+        name, *keys = case
+        return SCENES / f"{name}.toml", keys
+    made = folder / "scene.toml"
     if "\n" in case:
-        return case
-    made = folder / "new.toml"
-    subprocess.run([command, "new", "-q", "--kind", case, "--out", str(made)], check=True)
-    return made.read_text()
+        made.write_text(case)
+    else:
+        subprocess.run([command, "new", "-q", "--kind", case, "--out", str(made)], check=True)
+    return made, []
 
 
-def damped(text):
-    """The scene with air, implicit Euler, and an end at rest."""
-    text = re.sub(r"(?m)^damping = .*\n", "", text)
-    text = text.replace("[sheet]\n", "[sheet]\ndamping = 5.0\n", 1)
-    text = re.sub(r"(?s)\[stop\].*?(?=\n\[|\Z)", "", text)
-    text = re.sub(r"(?m)^integrator = .*\n", "", text)
-    if "[method]\n" not in text:
-        text += "\n[method]\n"
-    text = text.replace("[method]\n", '[method]\nintegrator = "implicit_euler"\n', 1)
-    return text + "\n[stop]\ntime = 120.0\nrest = { speed = 1e-5, duration = 0.1 }\n"
-
-
-def measure(command, verb, scene, out):
+def measure(command, verb, scene, keys, out):
     """CPU seconds, factorisations, energy at the end."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(
-        [command, verb, str(scene), "--out", str(out), "--force", "--threads", "1"], capture_output=True, text=True
-    )
+    changes = [word for key in keys for word in ("--set", key)]
+    arguments = [command, verb, str(scene), *changes, "--out", str(out), "--threads", "1"]
+    done = subprocess.run(arguments, capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode != 0:
         return None, done.stderr.strip().splitlines()[0]
@@ -155,11 +145,9 @@ def main():
     for name in names or CASES:
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
-            text = text_of(CASES[name], folder, command)
-            (folder / "rest.toml").write_text(text)
-            (folder / "damped.toml").write_text(damped(text))
-            found, told = measure(command, "rest", folder / "rest.toml", folder / "rest")
-            run, told_run = measure(command, "simulate", folder / "damped.toml", folder / "damped")
+            scene, keys = scene_of(CASES[name], folder, command)
+            found, told = measure(command, "rest", scene, keys, folder / "rest")
+            run, told_run = measure(command, "simulate", scene, [*keys, *DAMPED], folder / "damped")
         if found is None or run is None:
             print(f"| {name} | {told if found is None else told_run} |", flush=True)
             continue

@@ -21,7 +21,8 @@ use isosheet_model::term::{Exchange, Formula, StepStart};
 /// step still changes.
 const TOLERANCE: f64 = 1e-6;
 
-/// Part of the energy below which a change of it is none: a step of the scene may hardly change the loads.
+/// Part of the energy below which a change of it is none, and part of the size of the sheet below which it has
+/// not moved: a step of the scene may hardly change the loads.
 const ENERGY_TOLERANCE: f64 = 1e-9;
 
 /// Part of the mean edge by which the forces at the start move the sheet in the first step of a search.
@@ -196,10 +197,9 @@ impl Equilibrium {
             let change = after - energy(&from.memories, &start.x) + exchange.stored - exchange.work;
             let changed = from.changed + change.abs();
             // The residual is zero where the last iteration could gain no more than round-off.
-            let moved: Vec<f64> = state.x.iter().zip(&start.x).map(|(b, a)| b - a).collect();
-            let stays = largest_norm(&moved) <= ENERGY_TOLERANCE * diameter(&start.x);
-            let is_none =
-                change.abs() <= ENERGY_TOLERANCE * after.abs() || minimum.residual == 0.0 && stays;
+            let stays = || distance(start, &state) <= ENERGY_TOLERANCE * diameter(&start.x);
+            let is_none = change.abs() <= ENERGY_TOLERANCE * after.abs()
+                || minimum.residual == 0.0 && stays();
             let is_balanced =
                 unbalanced <= TOLERANCE * largest || is_none && h >= lengths.longest();
             let size = changed.max(after.abs());
@@ -380,10 +380,15 @@ fn first_step(model: &SheetModel, attempt: &Attempt<'_>) -> f64 {
     h.min(attempt.h)
 }
 
+/// The largest displacement of a vertex from one state to another, metres.
+fn distance(from: &State, to: &State) -> f64 {
+    let moved: Vec<f64> = to.x.iter().zip(&from.x).map(|(b, a)| b - a).collect();
+    largest_norm(&moved)
+}
+
 /// Refuses a search that leads away without an end.
 fn check_held(start: &State, reached: &State) -> Result<(), StepError> {
-    let moved: Vec<f64> = reached.x.iter().zip(&start.x).map(|(b, a)| b - a).collect();
-    let distance = largest_norm(&moved);
+    let distance = distance(start, reached);
     if distance <= UNHELD * diameter(&start.x) {
         return Ok(());
     }
