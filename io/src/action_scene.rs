@@ -101,12 +101,7 @@ const STEP: f64 = 0.074;
 const ABOVE: f64 = 0.02;
 
 /// The part of the way to its middle that is left of a sheet which is crumpled.
-const CRUMPLED: f64 = 0.5;
-
-/// The speed below which sliding counts as rest in a sheet that is crumpled, m/s. Plates come at 25 to 40 mm/s
-/// whatever the size is. (With the default, a hundredth of an edge per second, the first tenth of a second of
-/// paper of 2025 vertices takes 2650 factorisations, and 390 with this.)
-const SLIDING: f64 = 1e-3;
+const CRUMPLED: f64 = 0.45;
 
 impl ActionScene {
     /// The text of the scene. The top of a body that the sheet drapes over, and the vertices that it hangs
@@ -180,14 +175,10 @@ impl ActionScene {
             Action::Hang(_) => 0.0,
             Action::Drape(..) | Action::Crumple => 0.3,
         };
-        let sliding = match self.action {
-            Action::Drape(..) | Action::Hang(_) => String::new(),
-            Action::Crumple => format!("rest_speed = {SLIDING:?} # m/s\n"),
-        };
         let step = two_digits(STEP * seconds);
         let _ = write!(
             text,
-            "\n[contact]\nself_contact = true\nfriction = {friction:?}\n{sliding}\n[forces]\ngravity = [0.0, 0.0, -{GRAVITY:?}] # m/s2\n\n\
+            "\n[contact]\nself_contact = true\nfriction = {friction:?}\n\n[forces]\ngravity = [0.0, 0.0, -{GRAVITY:?}] # m/s2\n\n\
              [method]\nstep = {step:?} # s\n\n[stop]\ntime = {:?} # s\n",
             self.time.unwrap_or(two_digits(stop)),
         );
