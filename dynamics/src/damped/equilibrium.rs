@@ -21,8 +21,8 @@ use isosheet_model::term::{Exchange, Formula, StepStart};
 /// step still changes.
 const TOLERANCE: f64 = 1e-6;
 
-/// Part of the energy below which a change of it is none, and part of the size of the sheet below which it has
-/// not moved: a step of the scene may hardly change the loads.
+/// Part of the energy below which a change of it is none, and part of the size of the sheet below which
+/// it has not moved: a step of the scene may hardly change the loads.
 const ENERGY_TOLERANCE: f64 = 1e-9;
 
 /// Part of the mean edge by which the forces at the start move the sheet in the first step of a search.
