@@ -30,9 +30,6 @@ pub(crate) struct ActionVerdict {
     moving: Option<(f64, usize, [f64; 3])>,
 }
 
-/// A sheet that is slower is at rest, m/s.
-const STILL: f64 = 1e-3;
-
 impl ActionVerdict {
     /// Of a complete run; `None` if there is no frame.
     pub(crate) fn of(recording: &Recording) -> Option<Self> {
@@ -48,8 +45,7 @@ impl ActionVerdict {
                 .sum::<f64>()
         };
         let fastest = (0..end.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
-        let is_at_rest =
-            summary.ending.reason == EndReason::Rest || summary.ending.largest_speed < STILL;
+        let is_at_rest = summary.ending.reason == EndReason::Rest;
         let forces = frames.contact_forces(last).unwrap_or_default();
         let touching = forces.as_chunks::<3>().0.iter().filter(|f| **f != [0.0; 3]);
         let held = recording.pins.iter().map(|v| end[v.index()][2]);

@@ -176,7 +176,8 @@ impl FoldVerdict {
                     false => ", but only as panels pass through each other, which no paper does",
                     _ => "",
                 };
-                format!("every crease closes{only}")
+                let open = Self::OPEN;
+                format!("every crease ends within {open} degrees of its angle{only}")
             }
             (open, Some(crease)) => format!(
                 "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",

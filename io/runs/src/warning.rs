@@ -49,8 +49,9 @@ impl Summary {
                  shorter than its arc",
                 brief(100.0 * bend.shortening())
             );
-            let remedy = "refine the mesh there: with half the edge length the error is a quarter; the page colours \
-                          faces by their strain and by the share of stretching in their energy";
+            let remedy = "refine the mesh there, or all of it by `sheet.refine` (of `drape`, `hang` and `crumple` \
+                          `--refine`): with half the edge length the error is a quarter; the page colours faces by their \
+                          strain and by the share of stretching in their energy";
             warnings.push(Warning::new(message, remedy));
         }
         let at_rest = self.elastic.and_then(|elastic| elastic.at_rest);

@@ -119,6 +119,8 @@ mod placing {
 
 /// What is read off: measures, and how far targets are reached.
 mod measures {
+    pub(crate) mod crease_gauge;
+    pub(crate) mod facing;
     pub(crate) mod measure;
     pub(crate) mod targets;
     pub(crate) mod yielding;

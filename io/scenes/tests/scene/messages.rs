@@ -118,7 +118,7 @@ const WRONG: [Wrong<'_>; 21] = [
         "vertices = []",
         [6, 6],
         "no vertex",
-        "compare the region",
+        "change the region, or the unit of a mesh file",
     ),
     (
         "version = 1",

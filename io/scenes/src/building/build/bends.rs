@@ -1,7 +1,7 @@
 //! Bending, creases, and how sheets stretch.
 
 use super::builder::{Builder, PlateMadeOf, at};
-use crate::measures::measure::CreaseGauge;
+use crate::measures::crease_gauge::CreaseGauge;
 use crate::measures::targets::DrivenCrease;
 use crate::measures::yielding::YieldingCrease;
 use crate::placing::in_words::elastic_in_words;
