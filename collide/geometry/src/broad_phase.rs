@@ -214,9 +214,9 @@ impl BroadPhase {
         });
     }
 
-    /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the
-    /// face, of those that are not joined. Both ends of the edge are further than `depth` (metres) from the
-    /// plane of the face: with 0 every crossing counts, and with more not those of faces that lie on each
+    /// An edge and a face of the mesh that are not joined, where the edge passes through the face at the
+    /// positions `x` (`3V`) of the last update. Both ends of the edge are further than `depth` (metres) from
+    /// the plane of the face. With 0 every crossing counts. A larger depth leaves out faces that lie on each
     /// other up to round-off.
     pub fn self_crossing(&mut self, x: &[f64], depth: f64) -> Option<[u32; 2]> {
         let mut pairs = Vec::new();

@@ -104,7 +104,7 @@ impl Neighbours {
         self.edge_edge.below(self.far)
     }
 
-    /// Pairs of the sheet with a body; more than those whose boxes overlap.
+    /// Pairs of the sheet with a body. The list also has pairs whose boxes do not overlap.
     pub(super) fn with_body(&self, body: usize) -> &CrossCandidates {
         &self.cross[body]
     }

@@ -280,8 +280,8 @@ impl ElasticSheet {
         union
     }
 
-    /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those
-    /// that are elastic.
+    /// Makes this the elasticity of a sheet in a union of several. `first` is the number of its first face
+    /// among the elastic ones.
     fn place(&mut self, part: &Part, first: usize) {
         let faces = std::mem::take(&mut self.faces).into_iter();
         self.faces = faces.map(|face| face.in_union(part)).collect();

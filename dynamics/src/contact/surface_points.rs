@@ -99,7 +99,7 @@ impl SurfacePoints {
         })
     }
 
-    /// With more carried points, after those that are there.
+    /// With more carried points, after the present ones.
     ///
     /// # Errors
     /// [`SurfacePointsError`].
@@ -116,7 +116,7 @@ impl SurfacePoints {
         self.own + self.carried.len()
     }
 
-    /// Number of points that are vertices, before those that are carried.
+    /// Number of points that are vertices; the carried points come after them.
     pub fn own(&self) -> usize {
         self.own
     }
@@ -262,7 +262,7 @@ impl<'a> CarriedSink<'a> {
         *self.blocks[a][b].get_or_insert_with(Matrix3::zeros) += block;
     }
 
-    /// The place of a vertex among those that are gathered.
+    /// The place of a vertex among the gathered ones.
     fn place(&mut self, vertex: u32) -> usize {
         let found = self.vertices.iter().position(|v| *v == vertex);
         found.unwrap_or_else(|| {
@@ -372,8 +372,8 @@ mod tests {
         assert!((of_vertices.0 - &expected).norm() < 1e-13 * expected.norm());
     }
 
-    /// Blocks of more bodies than are gathered at a time, some of them twice, are those that are handed on
-    /// one by one.
+    /// Blocks of more bodies than are gathered at a time, some of them twice, are equal to the blocks that
+    /// are handed on one by one.
     #[test]
     fn gathered_blocks_are_all_handed_on() {
         let body = |first: u32| std::array::from_fn(|k| (VertexId(first + k as u32), 0.25));

@@ -234,8 +234,8 @@ impl FormulaStep<'_> {
         v0 + 0.5 * (before + after)
     }
 
-    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole ones of the barrier,
-    /// and those that friction has given.
+    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole impulses of the
+    /// barrier, and the impulses of friction so far.
     fn pushed<'a>(
         &'a self,
         meeting: &'a Meeting,

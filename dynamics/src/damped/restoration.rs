@@ -30,8 +30,8 @@ use rand_chacha::ChaCha8Rng;
 /// shortens them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
 /// convergence is linear instead of quadratic.
 ///
-/// Where there are barriers their Hessian joins the mass matrix, so that the nearest positions are those that
-/// press least on them, and nothing is passed through on the way.
+/// Where there are barriers their Hessian joins the mass matrix. So the nearest positions press least on the
+/// barriers, and nothing is passed through on the way.
 pub(crate) struct Restoration {
     tuning: Tuning,
     axial: Vec<f64>,

@@ -123,7 +123,7 @@ impl Balance {
         true
     }
 
-    /// Sets the forces at all vertices to those that `add` adds to zero; false if there are no supports.
+    /// Sets the forces at all vertices to zero and lets `add` add to them; false if there are no supports.
     pub(crate) fn begin_with(&mut self, add: impl FnOnce(&mut [f64])) -> bool {
         if self.pins.is_empty() {
             return false;

@@ -282,7 +282,7 @@ impl Trajectory {
         nearest.filter(|_| (first - frame..=last + frame).contains(&time))
     }
 
-    /// The last frame of those whose time makes a value the smallest.
+    /// The frame whose time makes a value the smallest; of several such frames the last.
     pub fn with_least(&self, value: impl Fn(f64) -> f64) -> Option<usize> {
         let values = self.t.iter().map(|t| value(*t)).enumerate().rev();
         let least = values.min_by(|a, b| a.1.total_cmp(&b.1));

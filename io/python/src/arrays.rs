@@ -47,8 +47,8 @@ pub(crate) fn refuse_array(value: &Bound<'_, PyAny>) -> PyResult<()> {
     // Of other arrays `mask` is a method.
     let mask = value.getattr_opt(intern!(py, "mask"))?;
     if mask.is_some_and(|mask| !mask.is_callable()) {
-        let message = "the array has a mask, and a scene has numbers alone; give those that are meant, by \
-                       `array.compressed()` or `array.filled(value)`";
+        let message = "the array has a mask, and a scene has numbers alone; give the numbers that are \
+                       meant, by `array.compressed()` or `array.filled(value)`";
         return Err(PyValueError::new_err(message));
     }
     let Some(size) = value.getattr_opt(intern!(py, "size"))? else {

@@ -454,7 +454,7 @@ impl Run {
     /// frame: one frame alone, by its number, from the end where negative; then .stl, .off and .ply, too.
     /// time: one frame alone, the one that is nearest to a time, seconds; of two that are as near the later.
     /// every: every so many frames one.
-    /// fps: frames a second in place of those that were recorded, between which vertices go straight on.
+    /// fps: frames a second in place of the recorded frames, between which vertices go straight on.
     ///
     /// Returns the files, the one with that name last. ``run.save("cloth.usda", fps=24)``,
     /// ``run.save("end.obj", frame=-1)``
@@ -505,7 +505,7 @@ impl Run {
     /// height: pixels; the width follows from what is seen.
     /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
     /// colour: a quantity that the sheet is coloured by, such as "gap", with a scale of colours below the
-    ///     sheet; an unknown name raises an `Error` with those that the run has.
+    ///     sheet; an unknown name raises an `Error` with the names that the run has.
     /// range: the values at both ends of the scale, by default those in what is drawn.
     #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None, colour = None, range = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]

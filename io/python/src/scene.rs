@@ -40,7 +40,7 @@ impl Scene {
         &self.file
     }
 
-    /// The scene with all its values, also those that its text leaves out.
+    /// The scene with all its values, including values that its text leaves out.
     fn whole(&self) -> PyResult<Value> {
         let value = Value::try_from(self.file.scene());
         value.map_err(|e| PyValueError::new_err(e.to_string()))
@@ -196,7 +196,7 @@ impl Scene {
         &self.file.text().text
     }
 
-    /// All values as a dictionary, also those that the text leaves out.
+    /// All values as a dictionary, including values that the text leaves out.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.whole()?)
     }

@@ -134,7 +134,7 @@ fn made(runs: &Table, of: &str, size: &str) -> Cell {
     }
 }
 
-/// The word before the name of a column, if it is one of those that [`made`] knows, and the name.
+/// The word before the name of a column, if [`made`] knows it, and the name.
 fn kind(of: &str) -> (&str, &str) {
     const KINDS: [&str; 8] = [
         "largest", "smallest", "mean", "median", "sum", "part", "counts", "power",

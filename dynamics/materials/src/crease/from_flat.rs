@@ -54,7 +54,7 @@ pub fn folding_from_flat(
         };
         let vertices = [a, b, left, right];
         let fold = Fold::at(x, &vertices);
-        // All faces of a flat sheet have this direction; those that are folded over have its opposite.
+        // All faces of a flat sheet have this direction; faces that are folded over have its opposite.
         let normal = fold.normal();
         if plane == Vector3::zeros() {
             plane = normal;

@@ -251,8 +251,8 @@ fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     (roots.rigidity(face) * area).sqrt()
 }
 
-/// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its
-/// edges; those that clamps hold apart.
+/// The second derivatives at the points of a face, from the slopes at its edges; slopes that clamps hold are
+/// apart. Their mean is the mean over the face.
 fn face_weights(
     sheet: &Sheet,
     fits: &[Option<Fit>],

@@ -75,8 +75,8 @@ impl<L: FaceLoad> ImplicitForce for Follower<L> {
 ///
 /// less that at the start of the step, with the forces `f` on the corners of each face and their derivative
 /// `J` at lagged positions `y`. Loads that follow a sheet have no energy as a rule: the part of `J` that has
-/// none lags behind. The positions `y` are those that the velocities at the start lead to, and are renewed
-/// where the minimisation has converged until `U` has the forces of the end of the step.
+/// none lags behind. The positions `y` are first where the velocities at the start lead. They are renewed
+/// where the minimisation has converged, until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FollowerStep<L> {
     load: Follower<L>,

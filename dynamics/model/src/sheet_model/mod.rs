@@ -247,11 +247,11 @@ impl SheetModel {
     /// any order; what is not finite is left out), see `Profile::breaks`. Scenes do so for all their
     /// functions of time.
     ///
-    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and
-    /// those that look back begin anew: a formula of second order over a jump of the acceleration `a` leaves
-    /// an error `h a / 2` in the velocities. Of breaks that follow one another within a step the first one
-    /// counts, since the steps do not resolve the others: keyframes of a motion that was sampled as often
-    /// cost nothing.
+    /// Methods without a chart end a sub-step there and give pins the velocities of the motion that begins. A
+    /// method that uses earlier steps begins anew: a formula of second order over a jump of the acceleration
+    /// `a` leaves an error `h a / 2` in the velocities. Of breaks that follow one another within a step the
+    /// first one counts, since the steps do not resolve the others: keyframes of a motion that was sampled as
+    /// often cost nothing.
     #[must_use]
     pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks = self.breaks.and(times);

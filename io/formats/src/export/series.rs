@@ -90,7 +90,7 @@ pub struct SeriesField {
     /// What the values belong to.
     pub support: FieldSupport,
     /// One value (of vectors three) for each vertex, edge or face of each frame of the trajectory, frame
-    /// after frame, also of those that are not written.
+    /// after frame, including the frames that are not written.
     pub values: Vec<f64>,
 }
 
@@ -228,8 +228,8 @@ impl<'a> Series<'a> {
         &self.bodies
     }
 
-    /// The frames of those that are written in which bodies are placed anew: the first alone where all rest,
-    /// none without bodies.
+    /// The written frames in which bodies are placed anew: the first alone where all rest, none without
+    /// bodies.
     pub(super) fn frames_of_bodies(&self) -> &[usize] {
         let count = match &self.bodies[..] {
             [] => 0,

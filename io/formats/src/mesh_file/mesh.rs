@@ -49,8 +49,8 @@ pub struct ReadingChanges {
     /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
     /// and fold angles at them.
     pub reversed_faces: usize,
-    /// Faces of FOLD files that were left out because creases are sides of none of them: those that the edges
-    /// enclose take their place.
+    /// Faces of FOLD files that were left out because creases are sides of none of them. The faces that the
+    /// edges enclose take their place.
     pub replaced_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
@@ -96,7 +96,7 @@ impl fmt::Display for ReadingChanges {
             (
                 self.replaced_faces,
                 FACES,
-                "of the file replaced by those that its edges enclose, as they leave out creases",
+                "of the file replaced by the faces that its edges enclose, as they leave out creases",
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),
@@ -283,8 +283,8 @@ impl MeshFile {
         }
     }
 
-    /// Makes one crease of those between the same vertices, which is unassigned where they are meant to do
-    /// different things, and removes those whose ends have become one vertex.
+    /// Unites creases between two vertices to one, which is unassigned where they are meant to do different
+    /// things. Removes creases whose ends have become one vertex.
     pub(super) fn unite_creases(&mut self) {
         let mut first: HashMap<[u32; 2], usize> = HashMap::new();
         let mut united: Vec<FileCrease> = Vec::new();

@@ -191,7 +191,7 @@ function farFrom(zero) {
   return (place) => !(Math.abs(place - zero) > FLAT);
 }
 
-/** Where the values of a field are, and what shows nothing: of creases those whose value is zero. */
+/** Where the values of a field are, and what shows nothing: creases with the value zero. */
 function placeOf(field, zero) {
   const ofCreases = field.place === "crease";
   return { place: ofCreases ? "edge" : field.place, ofCreases, leavesOut: ofCreases ? farFrom(zero) : Number.isNaN };

@@ -135,8 +135,8 @@ impl Facts {
     }
 
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques
-    /// about the origins of the frames of those that do not deform, and about the origin of space of the
-    /// others.
+    /// on rigid obstacles are about the origins of their frames, and torques on obstacles that deform about
+    /// the origin of space.
     pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<Wrench> {
         let driven = &self.origins.driven[..];
         let rigid = simulation.body_loads().into_iter().enumerate();

@@ -377,8 +377,8 @@ impl Folding {
         Ok(targets)
     }
 
-    /// The springs that drive creases to targets from positions `x` (`3V`, metres), and those that keep edges
-    /// flat.
+    /// The springs that drive creases to targets from positions `x` (`3V`, metres), and the springs that keep
+    /// edges flat.
     pub(crate) fn springs(
         &self,
         targets: &FoldTargets,

@@ -85,8 +85,8 @@ impl Refined {
         x
     }
 
-    /// What the edges of the refined mesh are meant to do: as those that they are parts of, and to stay flat
-    /// inside the faces.
+    /// What the edges of the refined mesh are meant to do. A part of an edge does what the edge does; edges
+    /// inside the faces stay flat.
     pub(crate) fn roles(&self, roles: EdgeRoles) -> EdgeRoles {
         let mut assignments = vec![None; self.sheet().topology().edge_count()];
         for edge in self.inside_faces() {

@@ -69,7 +69,7 @@ impl Scene {
     }
 }
 
-/// A shorter step that fits, of those that halving makes.
+/// The remedy: the longest step that fits, found by halving, or a slower change.
 fn remedy(h: f64, fits: impl Fn(f64) -> bool) -> String {
     let mut shorter = (1..=f64::MANTISSA_DIGITS as i32).map(|k| h * 0.5_f64.powi(k));
     match shorter.find(|h| fits(*h)) {

@@ -447,7 +447,7 @@ fn whole_numbers_beyond_those_of_toml_are_refused() {
     }
 }
 
-/// Names and choices that are not there are told with those that are.
+/// The message for an unknown name or choice lists the known ones.
 #[test]
 fn names_of_bodies_and_choices_are_told() {
     let capsule = "capsule = { radius = 0.1, length = 0 }";

@@ -90,7 +90,7 @@ impl Work {
         }
     }
 
-    /// The methods by which a scene is run that is not a file: for the tablecloth those that take contact. A
+    /// The methods by which a scene is run that is not a file: for the tablecloth the methods with contact. A
     /// file names its own.
     pub(super) fn methods(&self) -> Vec<Option<Stepped>> {
         let default = (DEFAULT, Method::default());

@@ -127,8 +127,8 @@ fn listed(frames: &[FrameRecord]) -> String {
 /// More ancestors of a frame are refused: a circle has no end.
 const MOST_ANCESTORS: usize = 1000;
 
-/// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
-/// inherits from the key frame.
+/// A frame and its ancestors, from which it inherits, the nearest first. A frame that inherits and names no
+/// parent inherits from the key frame.
 fn ancestry(frames: &[FrameRecord], number: usize) -> Result<Vec<usize>, DataError> {
     let mut chain = vec![number];
     let mut at = number;
