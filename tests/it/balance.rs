@@ -126,7 +126,7 @@ fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
     for _ in 0..60 {
         let report = simulation.step(STEP).expect("accepted");
         let new = momentum(&simulation);
-        // The reactions are those of the last sub-step, and a damped step that is repeated has dropped its
+        // The reactions belong to the last sub-step, and a damped step that is repeated has dropped its
         // history.
         if report.rejected > 0 {
             older = None;

@@ -410,7 +410,7 @@ impl ContactMesh {
         [v, a, b, c]
     }
 
-    /// The vertices of the pair of two edges, those of the first one first.
+    /// The vertices of a pair of two edges, the first edge first.
     #[inline]
     pub fn edge_edge(&self, [e, g]: [u32; 2]) -> [u32; 4] {
         let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[g as usize]);

@@ -116,8 +116,8 @@ impl Neighbours {
         &mut self.boxes
     }
 
-    /// Sets the boxes of sheet and bodies to those of a motion, and makes the lists anew if the motion needs
-    /// that. `parts` are the motions of the bodies.
+    /// Sets the boxes of sheet and bodies for a motion, and makes the lists anew if the motion needs that.
+    /// `parts` are the motions of the bodies.
     pub(super) fn update(
         &mut self,
         sheet: SheetMotion<'_>,

@@ -205,7 +205,7 @@ impl FormulaStep<'_> {
         let first = of(first)?;
         let second = match key.body {
             Some(number) => Partner::Obstacle(number),
-            // Those of the other one come last.
+            // Points of the other one come last.
             None => of(last)?,
         };
         let is_body = |part: &Partner| matches!(part, Partner::Body(_));

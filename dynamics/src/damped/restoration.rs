@@ -364,7 +364,7 @@ impl Restoration {
     }
 
     /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions
-    /// `x`. The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    /// `x`. The rods have the directions at the positions `rods_at`, or at `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,

@@ -274,7 +274,7 @@ impl Trajectory {
     }
 
     /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without
-    /// frames, and of a time that is beyond those of the frames by more than a frame lasts.
+    /// frames, and for a time that is beyond the frames by more than a frame lasts.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let (first, last) = (self.t.first()?, self.t.last()?);
         let frame = (last - first) / (self.t.len().max(2) - 1) as f64;
@@ -456,7 +456,7 @@ impl Trajectory {
         }
     }
 
-    /// What a motion has, if its frames are those of a trajectory.
+    /// What a motion has, if its frames come from a trajectory.
     fn contents<M: MotionFrames>(
         &self,
         motion: &M,

@@ -28,7 +28,7 @@ pub(super) struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The parts of all faces that the picture may show. Faces of the sheet stay whole. Those of bodies are
+    /// The parts of all faces that the picture may show. Faces of the sheet stay whole. Faces of bodies are
     /// halved until they are small enough, and parts outside of the picture are left out on the way: the
     /// number of pieces is bounded by the picture, however large a body is. New points are added to the
     /// scene.

@@ -38,7 +38,7 @@ pub(crate) fn vectors<'py>(py: Python<'py>, x: &[f64]) -> PyResult<Bound<'py, Py
     rows(py, x.as_chunks::<3>().0)
 }
 
-/// Most numbers of an array: those of ten times as many vertices as a sheet may have for its runs to end.
+/// Most numbers of an array: for ten times as many vertices as a sheet may have for its runs to end.
 const MOST_NUMBERS: usize = 10_000_000;
 
 /// Refuses arrays of numpy that have a mask, which a scene has no place for, or more numbers than any scene.

@@ -135,7 +135,7 @@ impl Mesh {
 
     /// A mesh of a generator of scenes: ``Mesh.generate("square", side=0.2, level=3)``.
     ///
-    /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises `SceneError` for wrong ones.
+    /// Names and parameters are as in ``sheet.mesh`` of scenes. Raises `SceneError` for wrong ones.
     #[staticmethod]
     #[pyo3(signature = (name, **parameters))]
     fn generate(

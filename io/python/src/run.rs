@@ -276,8 +276,8 @@ impl Run {
         self.numbers(py, |k| frames.get(k).copied())
     }
 
-    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the
-    /// sheet is from developable.
+    /// Gauss curvatures at the vertices, less the rest shape, 1/m2, of shape (T, V): how far the sheet is
+    /// from developable.
     #[getter]
     fn gauss_curvatures<'py>(
         &self,

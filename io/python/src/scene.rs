@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use toml::Value;
 
-/// A scene: everything that decides how a simulation goes. The keys are those of scene files.
+/// A scene: everything that decides how a simulation goes. The keys are the keys of scene files.
 ///
 /// The keys are given as keyword arguments, see `Scene.from_dict`. `Scene.from_toml` reads a file,
 /// `Scene.new` makes a scene to start from. A scene never changes; Scene.edit makes another one.

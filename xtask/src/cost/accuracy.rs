@@ -185,7 +185,7 @@ impl ExactProblem {
         }
     }
 
-    /// The positions at the end: exact ones, or those of a reference.
+    /// The positions at the end: exact ones, or of a reference.
     fn end(self) -> Result<Vec<f64>> {
         let end = self.duration();
         Ok(match self {

@@ -29,7 +29,7 @@ pub enum LoadedFacesError {
         /// Number of vertices.
         vertex_count: usize,
     },
-    /// The faces have no two sides, as those of a Moebius band.
+    /// The faces have no two sides, as on a Moebius band.
     #[error("the faces around the edge from {from} to {to} have no common side")]
     OneSided {
         /// Where an edge of the seam begins.

@@ -182,7 +182,7 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
-    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these
+    /// [`ElasticSheet`]; for the [union](ElasticSheet::union) of some of several sheets, the rods of these
     /// sheets.
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does
@@ -273,7 +273,7 @@ impl SheetModel {
         self.implicit.iter().map(Box::as_ref)
     }
 
-    /// Says that the vertices from this one on are those of [rigid bodies](crate::RigidBody): neither the
+    /// Says that the vertices from this one on belong to [rigid bodies](crate::RigidBody): neither the
     /// velocity damping nor [air](crate::Air) that is added later acts on them, and their edges say nothing
     /// about the lengths of the sheets.
     ///
@@ -369,7 +369,7 @@ impl SheetModel {
         &self.forces
     }
 
-    /// The number of vertices of sheets, before those of rigid bodies.
+    /// The number of vertices of sheets; vertices of rigid bodies come after them.
     pub fn sheet_vertices(&self) -> usize {
         self.sheet_vertices
     }

@@ -241,8 +241,8 @@ impl<'a> Series<'a> {
 
     /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards:
     /// the flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the
-    /// sheet lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat
-    /// sheet, as on closed cylinders.
+    /// sheet lies in the first frame of the trajectory. `None` if no flat sheet has the rest lengths, as on
+    /// closed cylinders.
     pub fn uv(&self) -> Option<&[[f64; 2]]> {
         self.uv.as_deref()
     }

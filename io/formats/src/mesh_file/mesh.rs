@@ -160,9 +160,9 @@ pub struct MeshFile {
     /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were
     /// made of one.
     pub drawn: DrawnLines,
-    /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of
-    /// PLY files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials;
-    /// of FOLD files by the key `faces_isosheet:group`.
+    /// The groups of triangles that the file names: in OBJ files by groups, objects and materials; in PLY
+    /// files by properties of faces, as `property=value`; in glTF files by nodes, meshes and materials; in
+    /// FOLD files by the key `faces_isosheet:group`.
     pub groups: FaceGroups,
     /// Of each triangle the texture coordinates of its corners, where the file has them; empty if it has
     /// none.

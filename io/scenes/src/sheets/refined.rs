@@ -73,8 +73,7 @@ impl Refined {
         inside.filter(|e| !is_part[e.index()]).collect()
     }
 
-    /// The vertices of the refined mesh at positions `x` (`3V`) of those of the mesh: new ones in the middle
-    /// of edges.
+    /// The vertices of the refined mesh at positions `x` (`3V`) of the mesh: new ones in the middle of edges.
     pub(crate) fn positions(&self, mut x: Vec<f64>) -> Vec<f64> {
         for level in &self.levels[..self.levels.len() - 1] {
             for ends in level.topology().edges() {

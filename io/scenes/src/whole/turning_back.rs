@@ -81,7 +81,7 @@ fn remedy(h: f64, fits: impl Fn(f64) -> bool) -> String {
     }
 }
 
-/// Whether two keys are those of components of the same vector.
+/// Whether two keys are components of one vector.
 fn are_components(one: &Key, other: &Key) -> bool {
     let is_component = |key: &Key| match key.parts().last() {
         Some(KeyPart::Name(name)) => ["x", "y", "z"].contains(&name.as_str()),

@@ -313,7 +313,7 @@ fn other_forms_are_told_the_right_one() {
     }
 }
 
-/// Sizes far beyond those of any sheet are refused, with the reason.
+/// Sizes far beyond any sheet are refused, with the reason.
 #[test]
 fn absurd_magnitudes_are_refused() {
     let mass = "density = 0.1\nmass = 1e-300";

@@ -31,7 +31,7 @@ pub(super) struct FrameRecord {
     pub(super) lines: Option<Vec<LineRecord>>,
     #[serde(rename = "edges_isosheet:lines")]
     pub(super) lines_of_edges: Option<Vec<Vec<usize>>>,
-    /// The other frames; in the key frame alone, whose keys are those of the file itself.
+    /// The other frames; in the key frame alone, which has the keys of the file itself.
     file_frames: Option<Vec<FrameRecord>>,
 }
 

@@ -43,7 +43,7 @@ pub(crate) struct FileUnit {
 }
 
 impl FileUnit {
-    /// Coordinates that are those of the file.
+    /// Coordinates as in the file.
     pub(crate) const SAME: Self = Self {
         along: [1.0, 1.0],
         name: "",
