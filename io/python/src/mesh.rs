@@ -148,7 +148,7 @@ impl Mesh {
         let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
         let mesh = value.try_into();
         let mesh: scene::Mesh = mesh.map_err(|e: toml::de::Error| {
-            let remedy = "names and parameters are those of `sheet.mesh` in scenes";
+            let remedy = "names and parameters are as in `sheet.mesh` of scenes";
             of_scene(py, &Problem::new(Key::root(), e.message(), remedy).into())
         })?;
         Self::of(py, &mesh)

@@ -345,10 +345,9 @@ impl Run {
     /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...,
     /// "body[0]", ... and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene
     /// gives a name, by that: a dict of "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and
-    /// "torque" of shape (S, 3), newton metres: of a support those on the sheet, the torque about the mean of
-    /// its vertices; of an obstacle those of the sheet on it, the torque about the origin of its own frame;
-    /// of a body those of all that touches it, the torque about its centre of mass; of its guide those on the
-    /// body.
+    /// "torque" of shape (S, 3), newton metres: from a support on the sheet, with the torque about the mean of
+    /// its vertices; from the sheet on an obstacle, with the torque about the origin of its own frame; on a
+    /// body from all that touches it, with the torque about its centre of mass; from a guide on its body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, then obstacles, bodies and guides, by their numbers.
@@ -537,7 +536,7 @@ impl Run {
     /// notebooks show, or where ffmpeg is installed as an .mp4, .webm or .gif file:
     /// ``run.film("cloth.apng")``.
     ///
-    /// every and fps are those of `save`, height, view, colour and range those of `picture`.
+    /// every and fps are as in `save`, height, view, colour and range as in `picture`.
     #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None, colour = None, range = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn film(

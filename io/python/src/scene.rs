@@ -111,7 +111,7 @@ impl Scene {
     /// The scene of a file, or of a text.
     ///
     /// `text_or_path`: a path, or a text of TOML, which is told by its having more than one line.
-    /// edits: keys and values that replace those of the file, such as {"stop.time": 0.5}.
+    /// edits: keys with new values in place of the file's values, such as {"stop.time": 0.5}.
     ///
     /// Raises `SceneError` with all problems that were found.
     #[staticmethod]

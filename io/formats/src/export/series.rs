@@ -441,7 +441,7 @@ impl<'a> Series<'a> {
         let x = self.trajectory.frame(frame);
         (
             self.trajectory.times()[frame],
-            x.expect("frames are those of the trajectory"),
+            x.expect("frames come from the trajectory"),
         )
     }
 
