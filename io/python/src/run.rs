@@ -345,9 +345,9 @@ impl Run {
     /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...,
     /// "body[0]", ... and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene
     /// gives a name, by that: a dict of "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and
-    /// "torque" of shape (S, 3), newton metres: from a support on the sheet, with the torque about the mean of
-    /// its vertices; from the sheet on an obstacle, with the torque about the origin of its own frame; on a
-    /// body from all that touches it, with the torque about its centre of mass; from a guide on its body.
+    /// "torque" of shape (S, 3), newton metres: from a support on the sheet, with the torque about the mean
+    /// of its vertices; from the sheet on an obstacle, with the torque about the origin of its own frame; on
+    /// a body from all that touches it, with the torque about its centre of mass; from a guide on its body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, then obstacles, bodies and guides, by their numbers.
