@@ -21,7 +21,7 @@ pub(crate) struct ActionVerdict {
     can_yield: bool,
     /// The height of the highest pinned vertex at the end, metres.
     held: Option<f64>,
-    /// The number of vertices, and of those that touch something.
+    /// The number of vertices, and of vertices that touch something.
     touching: [usize; 2],
     /// The time of the end, seconds.
     t: f64,

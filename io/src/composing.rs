@@ -114,7 +114,7 @@ impl Composing {
     }
 
     /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be
-    /// written, and a scene file among those of the run.
+    /// written, and a scene file among the files of the run.
     pub(super) fn begin(&self, of: &Path) -> Done {
         let folder = self.folder(of);
         if let Some(scene) = &self.scene {

@@ -99,7 +99,7 @@ pub(crate) struct Convert {
     #[arg(long)]
     plain: bool,
     /// Of pictures, colour the sheet by a quantity, such as "fold angle" or "gap", with a scale of colours
-    /// below; an unknown name is answered with those that the run has
+    /// below; an unknown name is answered with the names that the run has
     #[arg(long, visible_alias = "color", value_name = "QUANTITY")]
     colour: Option<String>,
     /// Of pictures with a quantity, the values at both ends of the scale of colours [default: those in all

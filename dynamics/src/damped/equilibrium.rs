@@ -398,8 +398,8 @@ fn check_held(start: &State, reached: &State) -> Result<(), StepError> {
     })
 }
 
-/// Refuses forces that depend on velocities and act at rest too, such as those of wind: they have no term in
-/// the search.
+/// Refuses forces that depend on velocities and act at rest too, such as wind: they have no term in the
+/// search.
 fn check_forces(model: &SheetModel, state: &State) -> Result<(), StepError> {
     let mut forces = vec![0.0; state.x.len()];
     for force in model.implicit_forces() {

@@ -19,7 +19,7 @@ pub struct FoldVerdict {
     pub furthest: Option<FoldedCrease>,
     /// What touches the panels beside that one, if it is open.
     pub held_open: Option<TouchingFaces>,
-    /// The number of panels, and of those that bend by more than [`FoldVerdict::BENDS`] at an edge.
+    /// The number of panels, and of panels that bend by more than [`FoldVerdict::BENDS`] at an edge.
     pub panels: [usize; 2],
     /// Whether they can bend.
     pub is_elastic: bool,
@@ -222,7 +222,7 @@ impl FoldVerdict {
     }
 }
 
-/// The edges inside of panels: those that are no creases.
+/// The edges inside of panels: all edges but the creases.
 fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<Item = EdgeId> {
     let mut is_crease = vec![false; topology.edge_count()];
     for (e, _) in &targets.creases {

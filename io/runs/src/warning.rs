@@ -70,7 +70,7 @@ impl Summary {
             let remedy = "refine the mesh there; for a sheet that only rolls up or unrolls as a whole it may stay as it is";
             warnings.push(Warning::new(message, remedy));
         }
-        // Where a sheet mostly bends, its forces are those of the bends.
+        // Where a sheet mostly bends, its forces come from the bends.
         let is_stretched = |e: &ElasticSummary| e.share > 0.5 && e.slack > Self::SLACK;
         let slack = self.elastic.filter(is_stretched);
         if let Some(elastic) = slack.filter(|_| self.ending.is_squeezed()) {

@@ -27,7 +27,7 @@ pub(super) fn outlines(flat: &Sheet) -> Vec<Stroke> {
     loops.map(outline).collect()
 }
 
-/// The creases. Those that fold alike and go straight on are one line.
+/// The creases. Creases that fold alike and go straight on are one line.
 pub(super) fn creases(flat: &Sheet, folds: &[Fold]) -> Vec<Stroke> {
     // Angles have nine digits after the layout: they are alike if these are.
     let key = |fold: &Fold| ((fold.size() * 1e9).round() as u64, class(fold) as u8);

@@ -48,7 +48,7 @@ fn a_vertex_without_an_order_of_layers_is_told() {
     );
 }
 
-/// The last line has three sentences at most, and its numbers are those of the other lines.
+/// The last line has three sentences at most, and its numbers agree with the other lines.
 #[test]
 fn the_lines_of_a_folding_agree() {
     let dir = tempfile::tempdir().unwrap();

@@ -74,8 +74,8 @@ pub(crate) struct CreaseGauge {
 }
 
 impl CreaseGauge {
-    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it. (Those
-    /// of other sheets have other numbers.)
+    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it.
+    /// (Springs of other sheets have other numbers.)
     pub(crate) fn find_others(&mut self, of_sheet: &[(Arc<CreaseSprings>, usize)]) {
         if !of_sheet.iter().any(|(_, k)| *k == self.potential) {
             return;

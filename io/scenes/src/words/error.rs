@@ -87,7 +87,7 @@ const MOST_PROBLEMS: usize = 50;
 /// Most problems that are shown of the entries of one list: they tend to have one cause.
 const MOST_OF_LIST: usize = 3;
 
-/// The problems without most of those of the entries of one list, of which their number is told.
+/// The problems without most of the entries of one list, whose number is told instead.
 fn first_of_lists(problems: Vec<Problem>) -> Vec<Problem> {
     // Of each list, or key of its entries, which one was the last that is shown, and how many are not.
     let mut lists: BTreeMap<String, (usize, usize, usize)> = BTreeMap::new();
@@ -249,8 +249,8 @@ fn group<'a>(problem: &'a Problem, name: &str, text: &'a str, span: Range<usize>
     }
 }
 
-/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source
-/// is rendered without them.
+/// A text whose escape characters are shown, so that all escape characters of a rendered message are its own.
+/// The source is rendered without them.
 fn without_colours(text: &str) -> String {
     text.replace('\u{1b}', "\\u001b")
 }

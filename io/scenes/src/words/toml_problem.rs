@@ -118,7 +118,7 @@ fn expected_in_words(expected: &str) -> (String, &'static str) {
     (words.to_owned(), remedy)
 }
 
-/// Lists of fixed length; other words are those of scenes already.
+/// Lists of fixed length; other words are words of scenes already.
 fn expected_list(expected: &str) -> (String, &'static str) {
     let lengths = ["an array of length ", "a tuple of size "];
     let length = lengths.iter().find_map(|l| expected.strip_prefix(l));
