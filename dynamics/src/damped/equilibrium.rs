@@ -251,6 +251,13 @@ impl Integrator for Equilibrium {
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (start, model) = (attempt.state, scene.model);
+        // Here, before the search takes its time; and where it ends, as such a force may act there alone.
+        let resting = State {
+            t: start.t + attempt.h,
+            v: vec![0.0; start.v.len()],
+            ..start.clone()
+        };
+        check_forces(model, &resting)?;
         let first = first_step(model, &attempt);
         let mut lengths = Lengths {
             span: attempt.h,
