@@ -301,7 +301,7 @@ fn misuse_is_answered_before_anything_is_run() {
         "--on",
         "block.obj",
         "--tool-size",
-        "100",
+        "100m",
     ];
     refused(
         &far,

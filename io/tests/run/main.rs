@@ -14,6 +14,7 @@ mod drawings;
 mod ends;
 mod events;
 mod extending;
+mod fit;
 mod fold;
 mod fold_sides;
 mod fold_verdicts;

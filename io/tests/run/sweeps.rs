@@ -285,7 +285,7 @@ fn wrong_keys_and_values_are_refused_before_anything_runs() {
         second,
         third,
         fourth,
-        "scene.toml:",
+        "scene.toml with sheet.damping=1, stop.time=0:",
         "nothing was run",
     ] {
         assert!(text.contains(part), "{part}: {text}");
