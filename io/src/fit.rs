@@ -34,8 +34,8 @@ Examples:
 pub(crate) struct FitArgs {
     /// The scene file
     scene: PathBuf,
-    /// A key and the range of its value; if its ends are positive and one is ten times the other, the logarithm
-    /// varies
+    /// A key and the range of its value; if its ends are positive and one is ten times the other, the
+    /// logarithm varies
     #[arg(long, value_name = "KEY=FROM..TO", required = true, value_parser = advised::<FitRange>)]
     vary: Vec<FitRange>,
     /// What the run is to end with: NAME=VALUE of a measure, or a mesh file; with +-SIGMA behind it the
@@ -44,7 +44,8 @@ pub(crate) struct FitArgs {
         long,
         value_name = "TARGET",
         required = true,
-        allow_hyphen_values = true
+        allow_hyphen_values = true,
+        value_parser = advised::<FitTarget>
     )]
     to: Vec<FitTarget>,
     /// Compare the shapes at rest, as `isosheet rest` finds them
