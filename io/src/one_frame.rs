@@ -10,8 +10,8 @@ use isosheet_scenes::Folding;
 /// The one frame of a run that is written, if one alone is.
 #[derive(Debug, Args)]
 pub(super) struct OneFrame {
-    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0; of a run also
-    /// `last`)
+    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0; of a run
+    /// also `last`)
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     pub(super) frame: Option<FrameNumber>,
     /// Of a run, write the frame that is nearest to time T alone, seconds; T is a time of the run

@@ -261,8 +261,8 @@ impl Simulation {
     /// replace: whether a run that the folder holds is deleted; without it, it is kept, and `RunFailed`
     /// raised.
     ///
-    /// Without changes between the steps the files have the bits of the files of the command, but for wall times.
-    /// The scene in the folder has what was driven as it went, and ends where the recording does; what else
+    /// Without changes between the steps the files have the bits of the files of the command, but for wall
+    /// times. The scene in the folder has what was driven as it went, and ends where the recording does; what else
     /// was changed is in ``run.summary["control"]``.
     ///
     ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))

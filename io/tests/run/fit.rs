@@ -55,8 +55,8 @@ fn refused(dir: &Path, arguments: &[&str], exit: i32) -> String {
     said
 }
 
-/// A sag that is small gives the rigidity `q L^4 / (8 w)`, up to the square of the slope and of the height of a
-/// face; the scene that is written ends there.
+/// A sag that is small gives the rigidity `q L^4 / (8 w)`, up to the square of the slope and of the height of
+/// a face; the scene that is written ends there.
 #[test]
 fn the_rigidity_follows_from_the_sag() {
     let dir = tempfile::tempdir().unwrap();

@@ -37,7 +37,7 @@ pub enum FitError {
         path: PathBuf,
         /// Its number of vertices.
         found: usize,
-        /// That of the scene.
+        /// The number of the scene.
         expected: usize,
     },
     /// Targets of different units have no common measure of their differences.

@@ -99,9 +99,9 @@ pub enum Quantity {
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
     /// The angle between two parts of a sheet, degrees: between the flanges of a bent blank, or the ends of a
-    /// strip. A part is the faces that have all corners among the vertices, and faces along its vector area,
-    /// the sum of `(b - a) x (c - a) / 2` over its faces. The angle is 0 where both face one way, as in a flat
-    /// sheet, and 180 where one is folded onto the other.
+    /// strip. A part has the faces whose corners are all among the vertices. It faces along its vector area,
+    /// the sum of `(b - a) x (c - a) / 2` over its faces. The angle is 0 in a flat sheet, and 180 where one
+    /// part is folded onto the other.
     AngleTo(Selection),
     /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: it
     /// excludes the bend of a sheet over the faces beside it, which the angle between these faces includes.
