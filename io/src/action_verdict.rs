@@ -30,6 +30,9 @@ pub(crate) struct ActionVerdict {
     moving: Option<(f64, usize, [f64; 3])>,
 }
 
+/// A speed that nobody sees, m/s.
+const SLOW: f64 = 1e-3;
+
 impl ActionVerdict {
     /// Of a complete run; `None` if there is no frame.
     pub(crate) fn of(recording: &Recording) -> Option<Self> {
@@ -122,6 +125,9 @@ impl ActionVerdict {
         };
         let moving = match self.moving {
             None => format!("at rest after {:.2} s", self.t),
+            Some((speed, ..)) if speed < SLOW => {
+                format!("slower than {} mm/s after {:.2} s", 1e3 * SLOW, self.t)
+            }
             Some((speed, v, [x, y, z])) => format!(
                 "not at rest after {:.2} s: {:.1} mm/s at most, about vertex {v} at ({x:.3}, {y:.3}, {z:.3}) m",
                 self.t,
