@@ -1,5 +1,6 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
+use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::limit_error::LimitError;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
@@ -163,6 +164,42 @@ pub trait Remembering {
     /// step is refused. The default leaves it.
     fn settle(&self, _state: Reached<'_>, _memory: &mut [f64]) -> Settled {
         Settled::default()
+    }
+
+    /// Adds to `of_memory` the derivatives of `w . dV/dx` by the numbers of the memory, with the vector `w`
+    /// (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn add_memory_products(
+        &self,
+        _at: At<'_>,
+        _w: &[f64],
+        _of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("what it remembers")),
+        }
+    }
+
+    /// Of [`Remembering::settle`] at a state, with the memory that it found: makes the derivatives of a
+    /// number by the memory that it left those by the memory that it found, and adds those by the positions
+    /// to `of_x` (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn pull_back_settling(
+        &self,
+        _state: Reached<'_>,
+        _found: &[f64],
+        _of_memory: &mut [f64],
+        _of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("what it remembers")),
+        }
     }
 
     /// Whether the memory is that of a material that yields. Such potentials are for methods that minimise
@@ -437,6 +474,23 @@ impl Potential for Gravity {
 pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);
+
+    /// Adds to `of_x` and `of_v` (`3V`) the derivatives of `w . f` by positions and velocities, with the
+    /// vector `w` (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default.
+    fn add_state_products(
+        &self,
+        _t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        _w: &[f64],
+        _of_x: &mut [f64],
+        _of_v: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Err(NoDerivative::of_type::<Self>("positions and velocities"))
+    }
 }
 
 #[cfg(test)]

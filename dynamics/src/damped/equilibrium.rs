@@ -5,6 +5,7 @@ use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::minimiser::{Minimiser, Stability};
 use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
+use crate::step::accepted::{StepEvent, StepKind, Taken};
 use crate::step::integrator::{
     Attempt, Integrator, MethodTraits, Phases, Proposal, Scene, StepAccount,
 };
@@ -288,6 +289,7 @@ impl Integrator for Equilibrium {
                     check_forces(model, &reached.state)?;
                     self.propose_equilibrium(
                         &scene,
+                        &attempt,
                         lengths.h,
                         reached,
                         lowest_frequency,
@@ -319,6 +321,7 @@ impl Equilibrium {
     fn propose_equilibrium(
         &self,
         scene: &Scene<'_>,
+        attempt: &Attempt<'_>,
         h: f64,
         reached: Reached,
         lowest_frequency: Option<f64>,
@@ -333,6 +336,23 @@ impl Equilibrium {
         motion.set_contacts(scene.objective.get().and_then(ContactTerm::state));
         self.minimiser.remember(h, &mut motion.history);
         proposal.settled = Some(reached.settled);
+        proposal.taken = attempt.is_recorded().then(|| {
+            let contact: Option<&ContactTerm> = scene.objective.get();
+            let state = contact.and_then(ContactTerm::state);
+            let has_friction = state.is_some_and(|state| !state.friction.contacts().is_empty());
+            Box::new(Taken {
+                before: None,
+                span: attempt.h,
+                h,
+                back: 0.0,
+                lags: Vec::new(),
+                kind: StepKind::Equilibrium,
+                events: has_friction
+                    .then_some(StepEvent::FrictionOfSearch)
+                    .into_iter()
+                    .collect(),
+            })
+        });
         proposal.account = StepAccount {
             residual: reached.residual,
             outcome: reached.outcome,

@@ -12,6 +12,8 @@ use crate::report::simulation_error::SimulationError;
 use crate::report::step_report::StepReport;
 use crate::report::totals::StepTotals;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
+use crate::sensitivity::StepEquations;
+use crate::step::accepted::AcceptedStep;
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_materials::potential::At;
@@ -263,6 +265,26 @@ impl Simulation {
     /// As [`Simulation::with_trace`], in place.
     pub fn set_trace(&mut self, sink: impl FnMut(&TraceEvent) + Send + 'static) {
         self.trace = Some(Box::new(sink));
+    }
+
+    /// Sets a sink for the accepted sub-steps to come of BDF2, implicit Euler and equilibria; results do not
+    /// depend on it. Other methods hand out none.
+    pub fn set_recorder(&mut self, sink: impl FnMut(AcceptedStep) + Send + 'static) {
+        if let Moved::ByMethod(engine) = &mut self.engine {
+            engine.set_recorder(Box::new(sink));
+        }
+    }
+
+    /// The equations of its steps, which it evaluates wherever it is asked to; the state stays as it is.
+    /// Nothing in charts.
+    pub fn step_equations(&mut self) -> Option<StepEquations<'_>> {
+        match &mut self.engine {
+            Moved::ByMethod(engine) => {
+                let (model, objective) = engine.parts();
+                Some(StepEquations::new(model, objective))
+            }
+            Moved::ByEngine(_) => None,
+        }
     }
 
     /// Adds contact: a barrier potential that keeps every gap positive.
