@@ -202,6 +202,23 @@ pub trait Remembering {
         }
     }
 
+    /// Adds to `of_x` (`3V`) the derivatives of a number by the positions at a state where a simulation starts,
+    /// of which those by the memory that [`Remembering::start`] makes there are `of_memory`.
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn pull_back_start(
+        &self,
+        _state: Reached<'_>,
+        _of_memory: &[f64],
+        _of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("where a run starts")),
+        }
+    }
+
     /// Whether the memory is that of a material that yields. Such potentials are for methods that minimise
     /// them (BDF2, implicit Euler). The default says no.
     fn can_yield(&self) -> bool {

@@ -292,11 +292,22 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::Contact`] if the method does not support contact or the state is in contact.
     pub fn with_contact(
-        mut self,
+        self,
         contact: impl Contact + 'static,
     ) -> Result<Self, SimulationError> {
+        self.with_boxed_contact(Box::new(contact))
+    }
+
+    /// As [`Simulation::with_contact`], of a contact whose type is not known.
+    ///
+    /// # Errors
+    /// As [`Simulation::with_contact`].
+    pub fn with_boxed_contact(
+        mut self,
+        contact: Box<dyn Contact>,
+    ) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Moved::ByMethod(engine) => engine.set_contact(Box::new(contact))?,
+            Moved::ByMethod(engine) => engine.set_contact(contact)?,
             Moved::ByEngine(_) => return Err(ContactError::Method.into()),
         }
         self.energy.start = self.energy();

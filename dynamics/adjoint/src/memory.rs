@@ -1,0 +1,91 @@
+//! What potentials remember, on the way back.
+
+use isosheet_materials::NoDerivative;
+use isosheet_materials::potential::{At, Memories, Reached};
+use isosheet_model::{SheetModel, State};
+
+/// What could not be handed on.
+#[derive(Debug)]
+pub(crate) struct Pulled {
+    pub(crate) source: NoDerivative,
+}
+
+fn reached(state: &State) -> Reached<'_> {
+    Reached {
+        t: state.t,
+        x: &state.x,
+        v: &state.v,
+    }
+}
+
+/// Makes derivatives `of_memory` by what potentials remember after a state those by what they remembered
+/// before, and adds those by its positions to `of_x`. What has no derivative and has changed is handed to
+/// `refuse`, and counts as constant.
+pub(crate) fn pull_settling(
+    model: &SheetModel,
+    state: &State,
+    found: &Memories,
+    of_memory: &mut [Vec<f64>],
+    of_x: &mut [f64],
+    mut refuse: impl FnMut(Pulled),
+) {
+    let all = model.potentials().zip(found.lists()).zip(of_memory);
+    for ((potential, found), of) in all {
+        let Some(remembering) = potential.remembering() else {
+            continue;
+        };
+        if of.iter().all(|m| *m == 0.0) {
+            continue;
+        }
+        let pulled = remembering.pull_back_settling(reached(state), found, of, of_x);
+        if let Err(source) = pulled {
+            let mut left = found.clone();
+            remembering.settle(reached(state), &mut left);
+            if left != *found {
+                refuse(Pulled { source });
+            }
+        }
+    }
+}
+
+/// Adds derivatives by the positions where a run starts to `of_x`, as far as potentials remember them.
+pub(crate) fn start_memories(
+    model: &SheetModel,
+    state: &State,
+    of_memory: &[Vec<f64>],
+    of_x: &mut [f64],
+    mut refuse: impl FnMut(Pulled),
+) {
+    for (potential, of) in model.potentials().zip(of_memory) {
+        let Some(remembering) = potential.remembering() else {
+            continue;
+        };
+        if of.iter().all(|m| *m == 0.0) {
+            continue;
+        }
+        if let Err(source) = remembering.pull_back_start(reached(state), of, of_x) {
+            refuse(Pulled { source });
+        }
+    }
+}
+
+/// Adds to `of_memory` the derivatives of `scale w . dV/dx` by what potentials remember.
+///
+/// # Errors
+/// The first potential that has none.
+pub(crate) fn add_memory_products(
+    model: &SheetModel,
+    (t, x): (f64, &[f64]),
+    memories: &Memories,
+    w: &[f64],
+    of_memory: &mut [Vec<f64>],
+) -> Result<(), NoDerivative> {
+    let all = model.potentials().zip(memories.lists()).zip(of_memory);
+    for ((potential, memory), of) in all {
+        if let Some(remembering) = potential.remembering() {
+            let at = At::new(t, x).with_memory(memory);
+            remembering.add_memory_products(at, w, of)?;
+        }
+    }
+    Ok(())
+}

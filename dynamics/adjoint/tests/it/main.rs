@@ -1,0 +1,4 @@
+//! Gradients beside central differences, closed forms and searches.
+
+mod differences;
+mod support;
