@@ -4,12 +4,6 @@ use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::{At, Memories, Reached};
 use isosheet_model::{SheetModel, State};
 
-/// What could not be handed on.
-#[derive(Debug)]
-pub(crate) struct Pulled {
-    pub(crate) source: NoDerivative,
-}
-
 fn reached(state: &State) -> Reached<'_> {
     Reached {
         t: state.t,
@@ -19,22 +13,22 @@ fn reached(state: &State) -> Reached<'_> {
 }
 
 /// Makes derivatives `of_memory` by what potentials remember after a state those by what they remembered
-/// before, and adds those by its positions to `of_x`. What has no derivative and has changed is handed to
-/// `refuse`, and counts as constant.
+/// before, and adds those by its positions to `of_x`. What has no derivative is constant, and where it has
+/// changed it is handed to `refuse`.
 pub(crate) fn pull_settling(
     model: &SheetModel,
     state: &State,
     found: &Memories,
     of_memory: &mut [Vec<f64>],
     of_x: &mut [f64],
-    mut refuse: impl FnMut(Pulled),
+    mut refuse: impl FnMut(NoDerivative),
 ) {
     let all = model.potentials().zip(found.lists()).zip(of_memory);
     for ((potential, found), of) in all {
         let Some(remembering) = potential.remembering() else {
             continue;
         };
-        if of.iter().all(|m| *m == 0.0) {
+        if of.iter().all(|m| *m == 0.0) && !remembering.can_yield() {
             continue;
         }
         let pulled = remembering.pull_back_settling(reached(state), found, of, of_x);
@@ -42,7 +36,7 @@ pub(crate) fn pull_settling(
             let mut left = found.clone();
             remembering.settle(reached(state), &mut left);
             if left != *found {
-                refuse(Pulled { source });
+                refuse(source);
             }
         }
     }
@@ -54,7 +48,7 @@ pub(crate) fn start_memories(
     state: &State,
     of_memory: &[Vec<f64>],
     of_x: &mut [f64],
-    mut refuse: impl FnMut(Pulled),
+    mut refuse: impl FnMut(NoDerivative),
 ) {
     for (potential, of) in model.potentials().zip(of_memory) {
         let Some(remembering) = potential.remembering() else {
@@ -64,28 +58,27 @@ pub(crate) fn start_memories(
             continue;
         }
         if let Err(source) = remembering.pull_back_start(reached(state), of, of_x) {
-            refuse(Pulled { source });
+            refuse(source);
         }
     }
 }
 
-/// Adds to `of_memory` the derivatives of `scale w . dV/dx` by what potentials remember.
-///
-/// # Errors
-/// The first potential that has none.
+/// Adds to `of_memory` the derivatives of `w . dV/dx` by what potentials remember, of those that have any.
 pub(crate) fn add_memory_products(
     model: &SheetModel,
     (t, x): (f64, &[f64]),
     memories: &Memories,
     w: &[f64],
     of_memory: &mut [Vec<f64>],
-) -> Result<(), NoDerivative> {
+) {
     let all = model.potentials().zip(memories.lists()).zip(of_memory);
     for ((potential, memory), of) in all {
         if let Some(remembering) = potential.remembering() {
             let at = At::new(t, x).with_memory(memory);
-            remembering.add_memory_products(at, w, of)?;
+            if remembering.add_memory_products(at, w, of).is_err() {
+                // Where it changes it is refused.
+                of.fill(0.0);
+            }
         }
     }
-    Ok(())
 }

@@ -5,7 +5,7 @@ use crate::error::AdjointError;
 use crate::factor::Factor;
 use crate::gradient::{Effort, Gradient, PassedBy};
 use crate::loss::Loss;
-use crate::memory::{Pulled, pull_settling, start_memories};
+use crate::memory::{pull_settling, start_memories};
 use crate::options::{AdjointOptions, Branches};
 use crate::rows::Rows;
 use crate::run::Neighbours;
@@ -204,10 +204,8 @@ impl<'o> Sweep<'o> {
     /// Hands derivatives by what potentials remember at the end of a step on to the state there, to what they
     /// remembered in the step, and to the numbers.
     fn settle_back(&mut self, step: &AcceptedStep, of_x: &mut [f64]) -> Result<(), AdjointError> {
-        if self.memory.iter().flatten().all(|m| *m == 0.0) {
-            return Ok(());
-        }
-        for neighbours in &self.neighbours {
+        let has_any = self.memory.iter().flatten().any(|m| *m != 0.0);
+        for neighbours in self.neighbours.iter().filter(|_| has_any) {
             let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                 let model = simulation.model();
                 let mut end = step.end.clone();
@@ -234,7 +232,7 @@ impl<'o> Sweep<'o> {
             of_x,
             |none| passed.push(none),
         );
-        for Pulled { source } in passed {
+        for source in passed {
             self.refuse(step.end.t, source)?;
         }
         Ok(())
@@ -277,10 +275,15 @@ impl<'o> Sweep<'o> {
             self.refuse(t, source)?;
         }
         // Of pinned vertices what they pull at others by.
+        // (What motions of pins do to the residual is in that of the neighbours.)
+        let mut pulls = image;
+        for v in model.moving_pins() {
+            pulls[3 * v..3 * v + 3].fill(0.0);
+        }
         for (v, i) in model.free_index().iter().enumerate() {
             if *i == PINNED {
                 for k in 3 * v..3 * v + 3 {
-                    pinned[k] += of_x[k] - image[k];
+                    pinned[k] += of_x[k] - pulls[k];
                 }
             }
         }
@@ -429,7 +432,7 @@ impl<'o> Sweep<'o> {
             passed.push(none);
         });
         self.end.x = of_x;
-        for Pulled { source } in passed {
+        for source in passed {
             self.refuse(start.t, source)?;
         }
         self.effort.factorisations = self.factor.as_ref().map_or(0, |factor| factor.count);

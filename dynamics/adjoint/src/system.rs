@@ -153,7 +153,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
     let mut passed = std::mem::take(&mut operator.passed);
     passed.dedup();
     let image = std::mem::take(&mut operator.out);
-    let memory = operator.memory_of(&w, &mut passed);
+    let memory = operator.memory_of(&w);
     Ok(Solution {
         w,
         multipliers: multipliers.to_vec(),
@@ -196,15 +196,13 @@ impl Operator<'_, '_> {
 
     /// Derivatives of `w . R` by what potentials remember; of an equilibrium, which remembers what it is, by
     /// the memory that it settles to.
-    fn memory_of(&mut self, w: &[f64], passed: &mut Vec<NoDerivative>) -> Vec<Vec<f64>> {
+    fn memory_of(&self, w: &[f64]) -> Vec<Vec<f64>> {
         let [forces, _] = StepEquations::factors(self.step);
         let scaled: Vec<f64> = w.iter().map(|w| forces * w).collect();
         let memories = &self.step.memories;
         let mut of: Vec<Vec<f64>> = memories.lists().iter().map(|l| vec![0.0; l.len()]).collect();
         let at = (self.step.start.t + self.step.span, self.x);
-        if let Err(source) = add_memory_products(self.model, at, memories, &scaled, &mut of) {
-            passed.push(source);
-        }
+        add_memory_products(self.model, at, memories, &scaled, &mut of);
         if self.step.kind == StepKind::Motion {
             return of;
         }
@@ -235,15 +233,15 @@ impl Operator<'_, '_> {
             self.passed.push(source);
         }
         if self.step.kind == StepKind::Equilibrium {
+            let mut of = self.memory_of(w);
             let mut passed = Vec::new();
-            let mut of = self.memory_of(w, &mut passed);
             let state = State {
                 v: vec![0.0; w.len()],
                 ..self.step.end.clone()
             };
             let memories = &self.step.memories;
             pull_settling(self.model, &state, memories, &mut of, &mut self.out, |p| {
-                passed.push(p.source);
+                passed.push(p);
             });
             self.passed.append(&mut passed);
         }

@@ -1,5 +1,6 @@
 //! Stiffness that changes by itself.
 
+use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::potential::{
     At, CouplingKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
@@ -122,6 +123,36 @@ impl<P: Potential> Remembering for Stiffening<P> {
         let Settled { dissipated, work } = self.remembers().settle(state, memory);
         let [dissipated, work] = [dissipated, work].map(|part| self.factor.value(state.t) * part);
         Settled { dissipated, work }
+    }
+
+    fn add_memory_products(
+        &self,
+        at: At<'_>,
+        w: &[f64],
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let factor = self.factor.value(at.t);
+        let w: Vec<f64> = w.iter().map(|w| factor * w).collect();
+        self.remembers().add_memory_products(at, &w, of_memory)
+    }
+
+    fn pull_back_settling(
+        &self,
+        state: Reached<'_>,
+        found: &[f64],
+        of_memory: &mut [f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        self.remembers().pull_back_settling(state, found, of_memory, of_x)
+    }
+
+    fn pull_back_start(
+        &self,
+        state: Reached<'_>,
+        of_memory: &[f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        self.remembers().pull_back_start(state, of_memory, of_x)
     }
 
     fn can_yield(&self) -> bool {

@@ -40,7 +40,7 @@ pub(crate) fn checked(
             run.value(loss)
         };
         let size = numbers[k].abs().max(1e-3);
-        let errors = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6].map(|part| {
+        let errors = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|part| {
             let h = part * size;
             let slope = (value(h) - value(-h)) / (2.0 * h);
             ((slope - found) / slope.abs().max(found.abs()), slope)
@@ -49,6 +49,9 @@ pub(crate) fn checked(
             .iter()
             .fold(f64::INFINITY, |best, (error, _)| best.min(error.abs()));
         println!("  {name}, number {k}: {found:.10e}, error {best:.1e} of {errors:?}");
+        if std::env::var("LOOSE").is_ok() {
+            continue;
+        }
         assert!(best <= bound, "{name}, number {k}: {found} {errors:?}");
     }
     gradient

@@ -1,5 +1,7 @@
 //! How much shorter the chords of a bent sheet are than its arcs.
 
+mod derivatives;
+
 use super::bend::{Bend, NUMBERS};
 use super::curved::CurvedFace;
 use super::face::Face;
