@@ -149,9 +149,6 @@ impl Advice for AdjointError {
 fn what_happened(event: StepEvent) -> &'static str {
     match event {
         StepEvent::Fallback => "the fallback of the step control took over, which is a branch",
-        StepEvent::FrictionOfSearch => {
-            "the search for an equilibrium went on against friction, which depends on its way"
-        }
         StepEvent::Restitution => "bodies met, and their velocities were corrected, which is a branch",
         _ => "something happened that has no derivative",
     }

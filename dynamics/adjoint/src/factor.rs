@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 
 /// How much stiffer equations are than the matrix at their vertices: what the factorised matrix leaves of
 /// them are so many parts.
-const STIFFNESS: f64 = 1e12;
+pub(crate) const STIFFNESS: f64 = 1e12;
 
 /// Growth of a diagonal that makes a matrix positive definite, and its first part of the diagonal.
 const GROWTH: f64 = 10.0;

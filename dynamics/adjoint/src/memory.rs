@@ -2,6 +2,7 @@
 
 use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::{At, Memories, Reached};
+use isosheet_materials::vectors::dot;
 use isosheet_model::{SheetModel, State};
 
 fn reached(state: &State) -> Reached<'_> {
@@ -40,6 +41,37 @@ pub(crate) fn pull_settling(
             }
         }
     }
+}
+
+/// What potentials choose where their memories become those of the end of a step.
+pub(crate) fn choices(model: &SheetModel, state: &State, found: &Memories) -> Vec<Vec<f64>> {
+    let all = model.potentials().zip(found.lists());
+    let own = all.map(|(potential, found)| match potential.remembering() {
+        Some(remembering) => remembering.choices(reached(state), found),
+        None => Vec::new(),
+    });
+    own.collect()
+}
+
+/// The sum of the products of `of` with what the potentials of a model remember at the end of a step, where
+/// they choose as others did.
+pub(crate) fn settled_products(
+    model: &SheetModel,
+    state: &State,
+    found: &Memories,
+    choices: &[Vec<f64>],
+    of: &[Vec<f64>],
+) -> f64 {
+    let mut sum = 0.0;
+    let all = model.potentials().zip(found.lists()).zip(choices).zip(of);
+    for (((potential, found), choices), of) in all {
+        if let Some(remembering) = potential.remembering() {
+            let mut memory = found.clone();
+            remembering.settle_by(choices, reached(state), &mut memory);
+            sum += dot(of, &memory);
+        }
+    }
+    sum
 }
 
 /// Adds derivatives by the positions where a run starts to `of_x`, as far as potentials remember them.

@@ -5,7 +5,7 @@ use crate::error::AdjointError;
 use crate::factor::Factor;
 use crate::gradient::{Effort, Gradient, PassedBy};
 use crate::loss::Loss;
-use crate::memory::{pull_settling, start_memories};
+use crate::memory::{choices, pull_settling, settled_products, start_memories};
 use crate::options::{AdjointOptions, Branches};
 use crate::rows::Rows;
 use crate::run::Neighbours;
@@ -159,16 +159,13 @@ impl<'o> Sweep<'o> {
             self.refuse_or_pass(t, event)?;
         }
         self.effort.substeps += 1;
-        let is_motion = step.kind == StepKind::Motion;
         let mut of_x = std::mem::take(&mut self.end.x);
         let mut of_v = std::mem::take(&mut self.end.v);
-        if is_motion {
-            self.settle_back(step, &mut of_x)?;
-            of_x.iter_mut().zip(&of_v).for_each(|(x, v)| *x += v / step.h);
-        } else {
-            // An equilibrium is at rest, and remembers what belongs to it.
-            of_v.fill(0.0);
-            self.memory.iter_mut().for_each(|m| m.fill(0.0));
+        self.settle_back(step, &mut of_x)?;
+        match step.kind {
+            StepKind::Motion => of_x.iter_mut().zip(&of_v).for_each(|(x, v)| *x += v / step.h),
+            // It is at rest.
+            StepKind::Search => of_v.fill(0.0),
         }
         let mut of_start = OfState::zeros(n);
         let mut of_before = OfState::zeros(n);
@@ -204,23 +201,16 @@ impl<'o> Sweep<'o> {
     /// Hands derivatives by what potentials remember at the end of a step on to the state there, to what they
     /// remembered in the step, and to the numbers.
     fn settle_back(&mut self, step: &AcceptedStep, of_x: &mut [f64]) -> Result<(), AdjointError> {
+        let choices = choices(&self.model, &step.end, &step.memories);
         let has_any = self.memory.iter().flatten().any(|m| *m != 0.0);
         for neighbours in self.neighbours.iter().filter(|_| has_any) {
             let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                 let model = simulation.model();
                 let mut end = step.end.clone();
                 model.place_pins(end.t, &mut end.x);
-                let mut memories = step.memories.clone();
-                model.settle(&end, &mut memories);
-                memories
+                settled_products(model, &end, &step.memories, &choices, &self.memory)
             });
-            let mut change = 0.0;
-            for (of, (up, down)) in self.memory.iter().zip(up.lists().iter().zip(down.lists())) {
-                for (of, (up, down)) in of.iter().zip(up.iter().zip(down)) {
-                    change += of * (up - down);
-                }
-            }
-            self.of_numbers[neighbours.number] += change / neighbours.distance;
+            self.of_numbers[neighbours.number] += (up - down) / neighbours.distance;
         }
         let model = Arc::clone(&self.model);
         let mut passed = Vec::new();
@@ -287,9 +277,8 @@ impl<'o> Sweep<'o> {
                 }
             }
         }
-        self.numbers_back(step, level, &w, &multipliers, &memory)?;
+        self.numbers_back(step, level, &w, &multipliers)?;
         let mut next = vec![0.0; n];
-        let is_motion = step.kind == StepKind::Motion;
         let mut equations = self
             .base
             .step_equations()
@@ -308,14 +297,12 @@ impl<'o> Sweep<'o> {
                 }
             }
         }
-        if is_motion {
-            let pulled = equations.pull_back(step, level.x, &w, of_v, of_start, of_before);
-            if let Err(source) = pulled {
-                self.refuse(t, source)?;
-            }
-            for (own, of) in self.memory.iter_mut().zip(&memory) {
-                own.iter_mut().zip(of).for_each(|(o, m)| *o -= m);
-            }
+        let pulled = equations.pull_back(step, level.x, &w, of_v, of_start, of_before);
+        if let Err(source) = pulled {
+            self.refuse(t, source)?;
+        }
+        for (own, of) in self.memory.iter_mut().zip(&memory) {
+            own.iter_mut().zip(of).for_each(|(o, m)| *o -= m);
         }
         Ok(next)
     }
@@ -327,10 +314,8 @@ impl<'o> Sweep<'o> {
         level: Level<'_>,
         w: &[f64],
         multipliers: &[f64],
-        memory: &[Vec<f64>],
     ) -> Result<(), AdjointError> {
         let t = step.end.t;
-        let is_equilibrium = step.kind == StepKind::Equilibrium;
         for neighbours in &mut self.neighbours {
             let mut ends = [0.0; 2];
             for (end, simulation) in ends.iter_mut().zip(&mut neighbours.simulations) {
@@ -360,18 +345,6 @@ impl<'o> Sweep<'o> {
                 if !multipliers.is_empty() {
                     let values = Rows::values(&model, step, &x);
                     *end += dot(multipliers, &values);
-                }
-                if is_equilibrium {
-                    let state = State {
-                        t,
-                        x,
-                        v: vec![0.0; w.len()],
-                    };
-                    let mut memories = step.memories.clone();
-                    model.settle(&state, &mut memories);
-                    for (of, own) in memory.iter().zip(memories.lists()) {
-                        *end += dot(of, own);
-                    }
                 }
             }
             let slope = (ends[0] - ends[1]) / neighbours.distance;

@@ -2,16 +2,16 @@
 
 use crate::blocks::Blocks;
 use crate::error::AdjointError;
-use crate::factor::{Factor, Space};
+use crate::factor::{Factor, STIFFNESS, Space};
 use crate::gradient::Effort;
 use crate::krylov::{self, System};
-use crate::memory::{add_memory_products, pull_settling};
+use crate::memory::add_memory_products;
 use crate::options::AdjointOptions;
 use crate::rows::Rows;
 use isosheet_dynamics::Simulation;
-use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, StepEquations, StepKind};
+use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, StepEquations};
 use isosheet_materials::NoDerivative;
-use isosheet_model::{PINNED, SheetModel, State};
+use isosheet_model::{PINNED, SheetModel};
 use std::sync::Arc;
 
 /// Most iterations of a linear system with its own matrix factorised.
@@ -19,9 +19,6 @@ const MOST_ITERATIONS: usize = 400;
 
 /// Change of the effective step by which another factorisation is of no use.
 const STEP_CHANGE: f64 = 0.1;
-
-/// How often what an equilibrium remembers is followed back.
-const MEMORY_ROUNDS: usize = 8;
 
 /// Residual from which a system counts as unsolved.
 const UNSOLVED: f64 = 1e-6;
@@ -180,7 +177,8 @@ struct Operator<'a, 'e> {
 }
 
 impl Operator<'_, '_> {
-    /// In what units the unknowns are measured: the stiffness at their vertices, and the inverse penalties.
+    /// In what units the unknowns are measured: the stiffness at their vertices,
+    /// and the inverse of that of equations as stiff.
     fn weights(&self) -> Vec<f64> {
         let mut weights = vec![0.0; 3 * self.model.free_count()];
         for (v, i) in self.model.free_index().iter().enumerate() {
@@ -190,32 +188,20 @@ impl Operator<'_, '_> {
             }
         }
         let rows = self.factor.penalties.iter();
-        weights.extend(rows.map(|r| if *r > 0.0 { 1.0 / r } else { 0.0 }));
+        weights.extend(rows.map(|r| if *r > 0.0 { STIFFNESS / r } else { 0.0 }));
         weights
     }
 
-    /// Derivatives of `w . R` by what potentials remember; of an equilibrium, which remembers what it is, by
-    /// the memory that it settles to.
+    /// Derivatives of `w . R` by what potentials remember.
     fn memory_of(&self, w: &[f64]) -> Vec<Vec<f64>> {
-        let [forces, _] = StepEquations::factors(self.step);
+        let forces = self.step.h * self.step.h;
         let scaled: Vec<f64> = w.iter().map(|w| forces * w).collect();
         let memories = &self.step.memories;
-        let mut of: Vec<Vec<f64>> = memories.lists().iter().map(|l| vec![0.0; l.len()]).collect();
+        let lists = memories.lists().iter();
+        let mut of: Vec<Vec<f64>> = lists.map(|l| vec![0.0; l.len()]).collect();
         let at = (self.step.start.t + self.step.span, self.x);
         add_memory_products(self.model, at, memories, &scaled, &mut of);
-        if self.step.kind == StepKind::Motion {
-            return of;
-        }
-        let mut sum = of.clone();
-        let mut ignored = vec![0.0; w.len()];
-        for _ in 0..MEMORY_ROUNDS {
-            let end = &self.step.end;
-            pull_settling(self.model, end, memories, &mut of, &mut ignored, |_| {});
-            for (sum, of) in sum.iter_mut().zip(&of) {
-                sum.iter_mut().zip(of).for_each(|(s, o)| *s += o);
-            }
-        }
-        sum
+        of
     }
 
     /// Sets `out` to `K^T w + G^T m`.
@@ -231,19 +217,6 @@ impl Operator<'_, '_> {
             .add_end_products(self.step, self.x, w, &mut self.out);
         if let Err(source) = ends {
             self.passed.push(source);
-        }
-        if self.step.kind == StepKind::Equilibrium {
-            let mut of = self.memory_of(w);
-            let mut passed = Vec::new();
-            let state = State {
-                v: vec![0.0; w.len()],
-                ..self.step.end.clone()
-            };
-            let memories = &self.step.memories;
-            pull_settling(self.model, &state, memories, &mut of, &mut self.out, |p| {
-                passed.push(p);
-            });
-            self.passed.append(&mut passed);
         }
         if self.rows.len() > 0 {
             self.rows.add_transpose(multipliers, &mut self.out);

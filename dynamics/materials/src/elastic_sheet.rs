@@ -531,6 +531,33 @@ impl Remembering for ElasticSheet {
         self.settle(state, memory);
     }
 
+    /// Of each face the part of the way from the slack that is wanted to the slack that there was.
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        let mut memory = memory.to_vec();
+        let mut choices = Vec::new();
+        if let [_, bends @ ..] = &mut memory[..] {
+            for arcs in &self.arcs {
+                let slack = |part: f64| {
+                    choices.push(part);
+                    None
+                };
+                arcs.remember_by(&self.faces, At::new(state.t, state.x), bends, slack);
+            }
+        }
+        choices
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        if let [barrier, bends @ ..] = memory {
+            *barrier = barrier.max(self.needed_barrier(state));
+            let mut choices = choices.iter().copied();
+            for arcs in &self.arcs {
+                let slack = |_: f64| choices.next();
+                arcs.remember_by(&self.faces, At::new(state.t, state.x), bends, slack);
+            }
+        }
+    }
+
     fn add_memory_products(
         &self,
         at: At<'_>,

@@ -166,6 +166,18 @@ pub trait Remembering {
         Settled::default()
     }
 
+    /// What [`Remembering::settle`] chooses at a state with a memory, where it would choose otherwise by the
+    /// slightest change: numbers that say so to [`Remembering::settle_by`]. The default chooses nothing.
+    fn choices(&self, _state: Reached<'_>, _memory: &[f64]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// As [`Remembering::settle`], with the choices of a potential that is nearly the same. The default has
+    /// none.
+    fn settle_by(&self, _choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.settle(state, memory);
+    }
+
     /// Adds to `of_memory` the derivatives of `w . dV/dx` by the numbers of the memory, with the vector `w`
     /// (`3V`).
     ///

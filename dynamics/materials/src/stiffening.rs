@@ -125,6 +125,14 @@ impl<P: Potential> Remembering for Stiffening<P> {
         Settled { dissipated, work }
     }
 
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        self.remembers().choices(state, memory)
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.remembers().settle_by(choices, state, memory);
+    }
+
     fn add_memory_products(
         &self,
         at: At<'_>,

@@ -7,7 +7,7 @@ use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
 use crate::damped::formula::StepFormula;
 use crate::damped::turning::Turning;
 use crate::report::effort::SolverEffort;
-use crate::step::accepted::{StepEvent, StepKind, Taken};
+use crate::step::accepted::{StepEvent, Taken};
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
@@ -227,7 +227,6 @@ fn minimised(
             h: k * h,
             back: b,
             lags: contact.map_or_else(Vec::new, ContactTerm::lags),
-            kind: StepKind::Motion,
             events: Vec::new(),
         })
     });

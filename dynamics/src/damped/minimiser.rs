@@ -27,6 +27,7 @@ use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
 use problem::StepProblem;
+use nalgebra::Vector3;
 use workspace::Workspace;
 
 /// Finds the positions with the rest lengths that minimise the incremental potential of a step: a
@@ -154,6 +155,13 @@ impl Minimiser {
     pub(crate) fn forget(&mut self) {
         self.work.remembered.fill(0.0);
         self.work.lagrangian.clear_multipliers();
+    }
+
+    /// The multipliers of rods and of vertex constraints at the result.
+    pub(crate) fn multipliers(&self) -> (Vec<f64>, Vec<Vector3<f64>>) {
+        let lagrangian = &self.work.lagrangian;
+        let constraints = lagrangian.vertex_rows.multipliers.clone();
+        (lagrangian.multipliers.clone(), constraints)
     }
 
     /// Leaves what the step that was just minimised gives to the next; `h` is the effective step.

@@ -812,9 +812,11 @@ impl Substeps<'_, '_> {
         totals.plastic += settled.dissipated;
         totals.work += settled.work;
         let is_fallback = self.proposer == Proposer::Fallback;
-        if let (Some(recorder), Some(taken)) = (&mut engine.recorder, engine.proposal.taken.take())
-        {
-            recorder(accepted(*taken, before, motion, is_fallback));
+        if let Some(recorder) = &mut engine.recorder {
+            let taken = engine.proposal.taken.take();
+            let taken = taken.map(|taken| accepted(*taken, before, motion, is_fallback));
+            let search = std::mem::take(&mut engine.proposal.search);
+            search.into_iter().chain(taken).for_each(recorder);
         }
         if is_fallback {
             // What the fallback remembers means nothing to the method that was asked for.
@@ -837,19 +839,16 @@ impl Substeps<'_, '_> {
 fn accepted(taken: Taken, before: &Motion, after: &Motion, is_fallback: bool) -> AcceptedStep {
     let mut events = taken.events;
     events.extend(is_fallback.then_some(StepEvent::Fallback));
-    let memories = match taken.kind {
-        StepKind::Motion => &before.memories,
-        StepKind::Equilibrium => &after.memories,
-    };
     AcceptedStep {
-        kind: taken.kind,
+        kind: StepKind::Motion,
         start: before.state.clone(),
         before: taken.before,
         end: after.state.clone(),
         span: taken.span,
+        sliding_time: taken.span,
         h: taken.h,
         back: taken.back,
-        memories: memories.clone(),
+        memories: before.memories.clone(),
         rods: after.history.multipliers.rods.clone(),
         constraints: after.history.multipliers.constraints.clone(),
         lags: taken.lags,

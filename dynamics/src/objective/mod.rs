@@ -182,13 +182,6 @@ impl Objective {
         }
     }
 
-    /// Adds the gradient of all terms but the inertia.
-    pub(crate) fn add_gradient_at_rest(&mut self, at: Iterate<'_>, out: &mut [f64]) {
-        for term in self.terms() {
-            term.add_gradient(at, 1.0, out);
-        }
-    }
-
     /// All terms but the inertia and contact.
     pub(crate) fn without_contact(&mut self) -> impl Iterator<Item = &mut dyn Term> {
         self.terms().filter(|term| !is::<ContactTerm>(&**term))

@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// R = M (x1 - x^) + h^2 sum_k dT_k/dx + G^T L = 0,   c = 0,
 /// ```
 ///
-/// of an equilibrium `R = sum_k dV_k/dx + G^T L / h^2`, evaluated where and with what model anybody likes:
-/// those of a run with other numbers at the states of this run say how the residual depends on the numbers.
+/// evaluated where and with what model anybody likes: those of a run with other numbers at the states of this
+/// run say how the residual depends on the numbers.
 ///
 /// Contact is at the ends of the motions of its bodies, and friction is as it was lagged.
 pub struct StepEquations<'a> {
@@ -55,15 +55,6 @@ impl<'a> StepEquations<'a> {
         self.model
     }
 
-    /// The factor of forces in the residual, `h^2` or one, and that of the multipliers.
-    pub fn factors(step: &AcceptedStep) -> [f64; 2] {
-        let squared = step.h * step.h;
-        match step.kind {
-            StepKind::Motion => [squared, 1.0],
-            StepKind::Equilibrium => [1.0, 1.0 / squared],
-        }
-    }
-
     /// Prepares the equations of a step at positions `x` (`3V`, metres) near its end.
     ///
     /// # Errors
@@ -78,10 +69,12 @@ impl<'a> StepEquations<'a> {
             StepKind::Motion => {
                 formula(step).place(self.model, &self.turning, &mut self.places);
             }
-            StepKind::Equilibrium => {
+            StepKind::Search => {
                 for place in &mut self.places {
-                    place.copy_from_slice(x);
+                    place.copy_from_slice(&step.start.x);
                 }
+                let [_, _, ahead] = &mut self.places;
+                self.model.place_pins(step.start.t + step.span, ahead);
             }
         }
         let start = start(step, &self.places);
@@ -100,25 +93,17 @@ impl<'a> StepEquations<'a> {
         Ok(())
     }
 
-    /// Sets the residual (`3V`, kilogram metres; newtons of an equilibrium) at positions `x`, at pinned
+    /// Sets the residual (`3V`, kilogram metres) at positions `x`, at pinned
     /// vertices too.
     pub fn residual(&mut self, step: &AcceptedStep, x: &[f64], out: &mut [f64]) {
         let at = at(step, x);
-        match step.kind {
-            StepKind::Motion => self.objective.set_gradient(at, step.h, out),
-            StepKind::Equilibrium => {
-                out.fill(0.0);
-                self.objective.add_gradient_at_rest(at, out);
-            }
-        }
-        let [_, multipliers] = Self::factors(step);
-        let rods: Vec<f64> = step.rods.iter().map(|l| multipliers * l).collect();
-        if !rods.is_empty() {
-            self.model.rods().apply_transpose_add(x, &rods, out);
+        self.objective.set_gradient(at, step.h, out);
+        if !step.rods.is_empty() {
+            self.model.rods().apply_transpose_add(x, &step.rods, out);
         }
         for (c, l) in self.model.constraints().iter().zip(&step.constraints) {
             let local = c.at(at.t, &place(x, c.vertex()));
-            let force = multipliers * local.jacobian.tr_mul(l);
+            let force = local.jacobian.tr_mul(l);
             for k in 0..3 {
                 out[3 * c.vertex().index() + k] += force[k];
             }
@@ -130,10 +115,8 @@ impl<'a> StepEquations<'a> {
     /// [`StartProducts::end`].
     pub fn add_hessian(&mut self, step: &AcceptedStep, x: &[f64], sink: &mut dyn BlockSink) {
         let at = at(step, x);
-        let [forces, multipliers] = Self::factors(step);
-        if step.kind == StepKind::Motion {
-            self.objective.add_inertia_hessian(at, sink);
-        }
+        let forces = step.h * step.h;
+        self.objective.add_inertia_hessian(at, sink);
         let mut scaled = Scaled {
             sink: &mut *sink,
             scale: forces,
@@ -146,7 +129,7 @@ impl<'a> StepEquations<'a> {
         }
         let rods = self.model.rod_edges().iter().zip(self.model.rods().edges());
         for ((edge, ends), l) in rods.zip(&step.rods) {
-            let block = Matrix3::from_diagonal_element(multipliers * l);
+            let block = Matrix3::from_diagonal_element(*l);
             for v in ends {
                 sink.add_vertex(VertexId::from_index(*v), &block);
             }
@@ -154,13 +137,13 @@ impl<'a> StepEquations<'a> {
         }
         for (c, l) in self.model.constraints().iter().zip(&step.constraints) {
             let local = c.at(at.t, &place(x, c.vertex()));
-            sink.add_vertex(c.vertex(), &(multipliers * local.hessian(l)));
+            sink.add_vertex(c.vertex(), &local.hessian(l));
         }
     }
 
     /// Adds to `out` (`3V`) the derivatives of `w . R` by the positions at which friction was lagged.
     pub fn add_lag_products(&mut self, step: &AcceptedStep, x: &[f64], w: &[f64], out: &mut [f64]) {
-        let [forces, _] = Self::factors(step);
+        let forces = step.h * step.h;
         if let Some(contact) = self.objective.get_mut::<ContactTerm>() {
             contact.add_lag_products(x, w, forces, out);
         }
@@ -195,7 +178,7 @@ impl<'a> StepEquations<'a> {
         w: &[f64],
     ) -> Result<StartProducts, NoDerivative> {
         let at = at(step, x);
-        let [forces, _] = Self::factors(step);
+        let forces = step.h * step.h;
         let start = start(step, &self.places);
         let mut products = StartProducts::zeros(x.len());
         for term in self.objective.others_without_contact() {
@@ -204,8 +187,8 @@ impl<'a> StepEquations<'a> {
         Ok(products)
     }
 
-    /// Hands the derivatives `-w . dR` of a number by the end of a step on to what it started from. `of_end`
-    /// are those by its state at the end, of which the velocities are handed on, too.
+    /// Hands the derivatives `-w . dR` of a number on to what a step started from, and those by the
+    /// velocities at its end as far as these are made of positions before.
     ///
     /// # Errors
     /// [`NoDerivative`] of a term or a force.
@@ -219,7 +202,7 @@ impl<'a> StepEquations<'a> {
         of_before: &mut OfState,
     ) -> Result<(), NoDerivative> {
         let n = x.len();
-        let [forces, _] = Self::factors(step);
+        let forces = step.h * step.h;
         let mut products = self.products(step, x, w)?;
         if let Some(contact) = self.objective.get_mut::<ContactTerm>() {
             contact.add_slip_products(x, w, forces, &mut products);
@@ -239,6 +222,7 @@ impl<'a> StepEquations<'a> {
         for (rest, v) in of.rest.iter_mut().zip(of_velocities) {
             *rest -= v / step.h;
         }
+        let is_search = step.kind == StepKind::Search;
         if !model.forces().is_empty() {
             let start = start(step, &self.places);
             let mut speeds = vec![0.0; n];
@@ -257,13 +241,28 @@ impl<'a> StepEquations<'a> {
                 )?;
             }
             let before = step.before.as_ref();
+            if is_search {
+                of_speeds.fill(0.0);
+            }
             let ratio = before.map_or(0.0, |b| step.span / (step.start.t - b.t));
             for i in 0..n {
                 of_start.v[i] += (1.0 + ratio) * of_speeds[i];
                 of_before.v[i] -= ratio * of_speeds[i];
             }
         }
-        formula(step).pull_back(model, &self.turning, &of, of_start, of_before);
+        match step.kind {
+            StepKind::Motion => {
+                formula(step).pull_back(model, &self.turning, &of, of_start, of_before);
+            }
+            StepKind::Search => {
+                for v in model.moving_pins() {
+                    of.ahead[3 * v..3 * v + 3].fill(0.0);
+                }
+                for i in 0..n {
+                    of_start.x[i] += of.rest[i] + of.prediction[i] + of.ahead[i];
+                }
+            }
+        }
         Ok(())
     }
 }
@@ -295,7 +294,7 @@ fn start<'a>(
         memories: &step.memories,
         before: step.before.as_ref(),
         span: step.span,
-        sliding_time: step.span,
+        sliding_time: step.sliding_time,
         h: step.h,
         formula: match step.before {
             Some(_) => Formula::TwoStep,

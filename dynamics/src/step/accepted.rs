@@ -4,8 +4,8 @@ use crate::State;
 use isosheet_materials::potential::Memories;
 use nalgebra::Vector3;
 
-/// An accepted sub-step of BDF2, implicit Euler or a search for an equilibrium: what it started from, and
-/// what it found.
+/// An accepted sub-step of BDF2 or implicit Euler, or a step of a search for an equilibrium: what it started
+/// from, and what it found.
 ///
 /// With `y = x0 + b (x0 - x_)` and the prediction `x^` of inertia it solves
 ///
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 /// M (x1 - x^) + h^2 sum_k dT_k/dx (x1) + G(x1)^T L = 0,   c(x1) = 0,   v1 = (x1 - y) / h;
 /// ```
 ///
-/// an equilibrium has neither inertia nor velocities.
+/// a step of a search starts and ends at rest, with `x^ = x0`.
 #[derive(Debug, Clone)]
 pub struct AcceptedStep {
     /// Whether it is a part of a motion.
@@ -26,6 +26,8 @@ pub struct AcceptedStep {
     pub end: State,
     /// Its length, seconds.
     pub span: f64,
+    /// Time in which surfaces slide as far as they do in it, seconds.
+    pub sliding_time: f64,
     /// Its effective length `h`, seconds.
     pub h: f64,
     /// `b`.
@@ -43,13 +45,13 @@ pub struct AcceptedStep {
     pub events: Vec<StepEvent>,
 }
 
-/// What an accepted sub-step solves.
+/// What an accepted sub-step belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepKind {
-    /// A step of a motion.
+    /// A motion.
     Motion,
-    /// An equilibrium.
-    Equilibrium,
+    /// A search for an equilibrium, whose steps all end at the time of the equilibrium.
+    Search,
 }
 
 /// What happened in a sub-step that has no derivative.
@@ -58,8 +60,6 @@ pub enum StepKind {
 pub enum StepEvent {
     /// The fallback of the step control took it.
     Fallback,
-    /// Friction of a search for an equilibrium acted against the displacements of its steps.
-    FrictionOfSearch,
     /// The velocities of rigid bodies were corrected so that their contact makes no energy.
     Restitution,
 }
@@ -72,7 +72,6 @@ pub(crate) struct Taken {
     pub(crate) h: f64,
     pub(crate) back: f64,
     pub(crate) lags: Vec<Vec<f64>>,
-    pub(crate) kind: StepKind,
     pub(crate) events: Vec<StepEvent>,
 }
 

@@ -4,7 +4,7 @@ use crate::contact::ContactState;
 use crate::objective::Objective;
 use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
-use crate::step::accepted::{Recording, Taken};
+use crate::step::accepted::{AcceptedStep, Recording, Taken};
 use crate::step::history::{BodyChange, History, Multipliers};
 use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
@@ -33,6 +33,8 @@ pub(crate) struct Proposal {
     pub(crate) settled: Option<Settled>,
     /// What it was solved from, where accepted sub-steps are handed out.
     pub(crate) taken: Option<Box<Taken>>,
+    /// The steps of a search, where they are handed out.
+    pub(crate) search: Vec<AcceptedStep>,
 }
 
 /// What a proposed sub-step achieves.
@@ -61,6 +63,7 @@ impl Proposal {
             account: StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton),
             settled: None,
             taken: None,
+            search: Vec::new(),
         }
     }
 }
@@ -147,6 +150,11 @@ impl<'a> Attempt<'a> {
     /// As part of a run whose accepted sub-steps are handed out.
     pub(crate) fn recorded(self, recording: Recording) -> Self {
         Self { recording, ..self }
+    }
+
+    /// Whether the run is one of those.
+    pub(crate) fn recording(&self) -> Recording {
+        self.recording
     }
 
     /// Whether it says what it was solved from.

@@ -169,6 +169,14 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
         self.remembers().settle(self.reached(state), memory)
     }
 
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        self.remembers().choices(self.reached(state), memory)
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.remembers().settle_by(choices, self.reached(state), memory);
+    }
+
     fn add_memory_products(
         &self,
         at: At<'_>,

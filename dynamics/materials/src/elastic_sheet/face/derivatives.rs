@@ -117,6 +117,24 @@ impl Face {
         }
     }
 
+    /// The bend with a slack on a part of the way from a squared bend of `wanted` to its own.
+    pub(in super::super) fn with_part(
+        &self,
+        here: At<'_>,
+        bend: Bend,
+        wanted: f64,
+        part: f64,
+    ) -> Bend {
+        let at = self.at(here, &bend);
+        let squared = wanted + part * (bend.squared - wanted);
+        let energy = |squared: f64| self.area * self.law_with(&at, squared, |law| law.energy());
+        Bend {
+            squared,
+            credit: bend.credit - (energy(squared) - energy(bend.squared)),
+            ..bend
+        }
+    }
+
     /// Adds the derivatives of a number by the positions (`3V`) with those by the length errors.
     pub(in super::super) fn pull_errors(
         &self,
