@@ -37,10 +37,22 @@ pub struct AdjointOptions {
     /// Iterations of a linear system after which its own matrix is factorised in place of that of another
     /// step. Default 12: at 1089 vertices a factorisation takes as long as some twenty solves.
     pub patience: usize,
-    /// Part of a number over which the derivatives of the equations of a step by it are central differences;
-    /// of numbers smaller than one in size the distance. Default 1e-5: what is left out is a part 1e-10, and
-    /// the round-off as much.
+    /// Part of the size of a number over which the derivatives of the equations of a step by it are central
+    /// differences. Default 1e-5: what is left out is a part 1e-10, and the round-off as much.
     pub difference: f64,
+    /// The sizes of the numbers of the scene: by how much each has to change to make another scene, in its
+    /// own unit. Of places of bodies that is the distance at which the barrier of contact acts. Default, and
+    /// where the list is too short or has zeros: the number itself, and one where that is zero.
+    pub sizes: Vec<f64>,
+}
+
+impl AdjointOptions {
+    /// The size of a number.
+    pub(crate) fn size(&self, number: usize, value: f64) -> f64 {
+        let given = self.sizes.get(number).copied().unwrap_or(0.0);
+        let sizes = [given, value.abs(), 1.0];
+        sizes.into_iter().find(|size| *size != 0.0).unwrap_or(1.0)
+    }
 }
 
 impl Default for AdjointOptions {
@@ -51,6 +63,7 @@ impl Default for AdjointOptions {
             tolerance: 1e-10,
             patience: 12,
             difference: 1e-5,
+            sizes: Vec::new(),
         }
     }
 }

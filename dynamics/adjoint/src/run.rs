@@ -143,7 +143,7 @@ impl<'f> Run<'f> {
     /// The simulations with a number that is larger and smaller, and the distance of these.
     fn neighbours(&self, number: usize) -> Result<Neighbours, AdjointError> {
         let value = self.numbers[number];
-        let step = self.options.difference * value.abs().max(1.0);
+        let step = self.options.difference * self.options.size(number, value);
         let ends = [value + step, value - step];
         let distance = ends[0] - ends[1];
         if !(distance.is_finite() && distance > 0.0) {

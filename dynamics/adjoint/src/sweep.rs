@@ -206,9 +206,7 @@ impl<'o> Sweep<'o> {
         for neighbours in self.neighbours.iter().filter(|_| has_any) {
             let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                 let model = simulation.model();
-                let mut end = step.end.clone();
-                model.place_pins(end.t, &mut end.x);
-                settled_products(model, &end, &step.memories, &choices, &self.memory)
+                settled_products(model, &step.end, &step.memories, &choices, &self.memory)
             });
             self.of_numbers[neighbours.number] += (up - down) / neighbours.distance;
         }

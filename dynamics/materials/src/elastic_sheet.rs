@@ -6,6 +6,8 @@ mod bend;
 mod bend_tests;
 mod curved;
 #[cfg(test)]
+mod derivative_tests;
+#[cfg(test)]
 mod direction_tests;
 mod error;
 mod evaluated;

@@ -27,7 +27,19 @@ pub(crate) fn checked(
     loss: &dyn Loss,
     bound: f64,
 ) -> Gradient {
-    let options = AdjointOptions::default();
+    checked_with(AdjointOptions::default(), name, family, numbers, plan, loss, bound)
+}
+
+/// As [`checked`], with options.
+pub(crate) fn checked_with(
+    options: AdjointOptions,
+    name: &str,
+    family: &dyn Family,
+    numbers: &[f64],
+    plan: &Plan,
+    loss: &dyn Loss,
+    bound: f64,
+) -> Gradient {
     let run = Run::record(family, numbers, plan.clone(), options.clone()).expect("a run");
     let gradient = run.gradient(loss).expect("a gradient");
     assert_eq!(gradient.value, run.value(loss));
@@ -39,7 +51,10 @@ pub(crate) fn checked(
             let run = Run::record(family, &moved, plan.clone(), options.clone()).expect("a run");
             run.value(loss)
         };
-        let size = numbers[k].abs().max(1e-3);
+        let size = match options.sizes.get(k) {
+            Some(size) => *size,
+            None => numbers[k].abs(),
+        };
         let errors = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|part| {
             let h = part * size;
             let slope = (value(h) - value(-h)) / (2.0 * h);
