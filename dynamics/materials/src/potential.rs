@@ -69,6 +69,12 @@ pub trait Potential: Debug + Send + Sync {
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
 
+    /// How [`Potential::add_hessian`] is to be taken by whoever needs all second derivatives. The default
+    /// says that they are there.
+    fn hessian_kind(&self) -> HessianKind {
+        HessianKind::Exact
+    }
+
     /// Adds a positive semidefinite part of the second derivatives, for minimisations where the whole Hessian
     /// is indefinite. The default adds what [`Potential::add_hessian`] adds; where that is indefinite too,
     /// the curvature of all potentials is left out.
@@ -390,6 +396,10 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).add_semidefinite_hessian(at, hessian);
     }
 
+    fn hessian_kind(&self) -> HessianKind {
+        (**self).hessian_kind()
+    }
+
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         (**self).couplings()
     }
@@ -431,6 +441,15 @@ pub enum CouplingKind {
     Soft,
     /// So stiff that conjugate gradients would not converge without them.
     Stiff,
+}
+
+/// Whether a Hessian has all second derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HessianKind {
+    /// It has.
+    Exact,
+    /// Some are left out, as far as they are not needed to minimise.
+    Partial,
 }
 
 /// How a potential depends on the positions.

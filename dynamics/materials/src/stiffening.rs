@@ -3,7 +3,7 @@
 use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::potential::{
-    At, CouplingKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
+    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
 };
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use isosheet_motion::{Profile, ProfileError};
@@ -71,6 +71,10 @@ impl<P: Potential> Potential for Stiffening<P> {
     fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let hessian = &mut self.scaled(at, hessian);
         self.potential.add_semidefinite_hessian(at, hessian);
+    }
+
+    fn hessian_kind(&self) -> HessianKind {
+        self.potential.hessian_kind()
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {

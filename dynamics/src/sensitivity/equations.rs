@@ -6,8 +6,12 @@ use crate::damped::turning::Turning;
 use crate::objective::Objective;
 use crate::step::accepted::{AcceptedStep, OfPlaces, OfState, StepKind};
 use crate::{SheetModel, StepError};
-use isosheet_materials::NoDerivative;
-use isosheet_materials::hessian::{BlockSink, CouplingSink, HessianPart, HessianSink};
+use isosheet_linalg::norm_inf;
+use isosheet_materials::hessian::{
+    BlockSink, CouplingSink, HessianPart, HessianProduct, HessianSink,
+};
+use isosheet_materials::vectors::diameter;
+use isosheet_materials::{At, HessianKind, NoDerivative, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
 use isosheet_model::term::{Formula, Iterate, StartProducts, StepStart};
 use nalgebra::{Matrix3, Vector3};
@@ -29,6 +33,9 @@ pub struct StepEquations<'a> {
     turning: Turning,
     places: [Vec<f64>; 3],
 }
+
+/// Part of the size of a sheet over which derivatives of a gradient are central differences.
+const DIFFERENCE: f64 = 1e-6;
 
 /// Where friction was lagged for the last time in the step that is differentiated.
 #[derive(Debug, Clone, Copy)]
@@ -161,6 +168,14 @@ impl<'a> StepEquations<'a> {
         w: &[f64],
         out: &mut [f64],
     ) -> Result<(), NoDerivative> {
+        let t = step.start.t + step.span;
+        let potentials = self.model.potentials_at(t, x, &step.memories);
+        for (potential, here) in potentials {
+            if potential.hessian_kind() == HessianKind::Partial {
+                let edges = self.model.edges().edges();
+                add_rest(potential, here, edges, (w, step.h * step.h), out);
+            }
+        }
         if !self.objective.has_others() {
             return Ok(());
         }
@@ -264,6 +279,40 @@ impl<'a> StepEquations<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// Adds `scale` times the product of `w` and the second derivatives of a potential that are not in its
+/// Hessian, by central differences of its gradient.
+fn add_rest(
+    potential: &dyn Potential,
+    here: At<'_>,
+    edges: &[[usize; 2]],
+    (w, scale): (&[f64], f64),
+    out: &mut [f64],
+) {
+    let largest = norm_inf(w);
+    if largest == 0.0 {
+        return;
+    }
+    let mut product = HessianProduct {
+        edges,
+        scale: -scale,
+        vector: w,
+        product: &mut *out,
+    };
+    potential.add_hessian(here, &mut product);
+    let step = DIFFERENCE * diameter(here.x) / largest;
+    let mut gradient = vec![0.0; out.len()];
+    for side in [1.0, -1.0] {
+        let moved = here.x.iter().zip(w).map(|(x, w)| x + side * step * w);
+        let moved: Vec<f64> = moved.collect();
+        gradient.fill(0.0);
+        potential.add_gradient(At { x: &moved, ..here }, &mut gradient);
+        let scale = 0.5 * side * scale / step;
+        out.iter_mut()
+            .zip(&gradient)
+            .for_each(|(o, g)| *o += scale * g);
     }
 }
 

@@ -211,14 +211,32 @@ fn another_rest_shape() {
         let clamp = grid.vertices_where(|[x, _, _]| x < 0.025);
         let model = SheetModel::of_material(&sheet, &film())
             .clamped(&clamp)
-            .swelling(p[2])
             .build()?
             .with_gravity();
         Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
     let loss = coordinate(8, 2, 8);
-    checked("another shape", &family, &[0.5, 2.0, 1e-3], &plan, &loss, 1e-6);
+    checked("another shape", &family, &[0.5, 2.0], &plan, &loss, 1e-6);
+}
+
+/// A film that swells. Its steps end where the round-off of the energy of its strain hides what is left of
+/// the forces.
+#[test]
+fn swollen() {
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let sheet = generate::anisotropic_grid(8, 3, 0.16, 0.06)?;
+        let clamp = sheet.vertices_where(|[x, _, _]| x < 0.025);
+        let model = SheetModel::of_material(&sheet, &film())
+            .clamped(&clamp)
+            .swelling(p[0])
+            .build()?
+            .with_gravity();
+        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+    };
+    let plan = Plan::steps(bdf2(), 1e-2, 8);
+    let loss = coordinate(8, 2, 8);
+    checked("swollen", &family, &[1e-3], &plan, &loss, 5e-5);
 }
 
 /// A flag in the wind: its velocity, the density of the air, and the damping.
@@ -260,7 +278,7 @@ fn the_state_at_the_start() {
         let mut start = State::moving(sheet.positions().to_vec(), vec![0.0; n]);
         start.x[3 * 8 + 2] += p[0];
         start.v[3 * 8 + 2] += p[1];
-        start.x[2] += p[2];
+        start.x[5] += p[2];
         Ok(Scene::new(model, start))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
@@ -268,7 +286,7 @@ fn the_state_at_the_start() {
     let numbers = [1e-4, 0.1, 2e-4];
     let gradient = checked("start", &family, &numbers, &plan, &loss, 1e-6);
     let of = &gradient.of_start;
-    for (found, expected) in [of.x[26], of.v[26], of.x[2]].iter().zip(&gradient.of_numbers) {
+    for (found, expected) in [of.x[26], of.v[26], of.x[5]].iter().zip(&gradient.of_numbers) {
         assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     }
 }

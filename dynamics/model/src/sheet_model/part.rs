@@ -3,7 +3,7 @@
 use isosheet_materials::{LimitError, NoDerivative};
 use isosheet_materials::hessian::HessianSink;
 use isosheet_materials::potential::{
-    At, CouplingKind, Limited, MaterialReport, Potential, PotentialShape, Reached, Remembering,
+    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, PotentialShape, Reached, Remembering,
     Settled,
 };
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
@@ -80,6 +80,10 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         let hessian = &mut Shifted { part, hessian };
         self.potential
             .add_semidefinite_hessian(self.own(at), hessian);
+    }
+
+    fn hessian_kind(&self) -> HessianKind {
+        self.potential.hessian_kind()
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {
