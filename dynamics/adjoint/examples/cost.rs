@@ -12,7 +12,10 @@ fn rods(p: &[f64]) -> Result<Scene, SceneError> {
     let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
         .with_acceleration([0.0, 0.0, -p[0]])
         .with_pins(&[VertexId(0)])?;
-    Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+    Ok(Scene::new(
+        model,
+        State::at_rest(sheet.positions().to_vec()),
+    ))
 }
 
 fn paper(p: &[f64], size: u32) -> Result<Scene, SceneError> {
@@ -23,7 +26,10 @@ fn paper(p: &[f64], size: u32) -> Result<Scene, SceneError> {
         .clamped(&[VertexId(0)])
         .build()?
         .with_acceleration([0.0, 0.0, -p[0]]);
-    Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+    Ok(Scene::new(
+        model,
+        State::at_rest(sheet.positions().to_vec()),
+    ))
 }
 
 fn drape(p: &[f64]) -> Result<Scene, SceneError> {
@@ -40,7 +46,12 @@ fn drape(p: &[f64]) -> Result<Scene, SceneError> {
     Ok(Scene::new(model, start).with_contact(contacts))
 }
 
-fn measure(name: &str, family: &dyn Family, numbers: &[f64], count: usize) -> Result<(), SceneError> {
+fn measure(
+    name: &str,
+    family: &dyn Family,
+    numbers: &[f64],
+    count: usize,
+) -> Result<(), SceneError> {
     let plan = Plan::steps(Method::default(), 1.0 / 60.0, count);
     let begin = ProcessTime::now();
     let Scene {
@@ -77,9 +88,9 @@ fn measure(name: &str, family: &dyn Family, numbers: &[f64], count: usize) -> Re
 }
 
 fn main() -> Result<(), SceneError> {
-    measure("rods", &rods, &[9.8], 30)?;
-    measure("paper", &|p: &[f64]| paper(p, 3), &[9.8, 5e-4], 30)?;
-    measure("paper", &|p: &[f64]| paper(p, 4), &[9.8, 5e-4], 20)?;
-    measure("drape", &drape, &[9.8, 5e-4], 30)?;
+    measure("rods", &rods, &[9.8], 60)?;
+    measure("paper", &|p: &[f64]| paper(p, 3), &[9.8, 5e-4], 60)?;
+    measure("paper", &|p: &[f64]| paper(p, 4), &[9.8, 5e-4], 60)?;
+    measure("drape", &drape, &[9.8, 5e-4], 60)?;
     Ok(())
 }

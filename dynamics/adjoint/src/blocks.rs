@@ -52,7 +52,9 @@ impl Blocks {
     pub(crate) fn clear(&mut self) {
         self.at_vertices.fill(Matrix3::zeros());
         self.along_edges.fill(Matrix3::zeros());
-        self.pairs.iter_mut().for_each(|(_, b)| *b = Matrix3::zeros());
+        self.pairs
+            .iter_mut()
+            .for_each(|(_, b)| *b = Matrix3::zeros());
         self.next = 0;
         self.squares.clear();
     }

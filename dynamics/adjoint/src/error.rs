@@ -101,7 +101,9 @@ pub enum AdjointError {
         value: f64,
     },
     /// A loss has derivatives of another length than the state.
-    #[error("the loss has {found} derivatives after step {step}, and the state {expected} coordinates")]
+    #[error(
+        "the loss has {found} derivatives after step {step}, and the state {expected} coordinates"
+    )]
     LossLength {
         /// Of the plan, 0 at the start.
         step: usize,
@@ -111,7 +113,9 @@ pub enum AdjointError {
         expected: usize,
     },
     /// A part of a run that was made again from its checkpoint is another one.
-    #[error("the part of the run from step {number} on, made again from its checkpoint, is another one")]
+    #[error(
+        "the part of the run from step {number} on, made again from its checkpoint, is another one"
+    )]
     NotRepeated {
         /// Of the plan, from 0.
         number: usize,
@@ -127,7 +131,9 @@ pub enum AdjointError {
 impl Advice for AdjointError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Scene { .. } | Self::Number { .. } => Some("give numbers near which scenes can be built"),
+            Self::Scene { .. } | Self::Number { .. } => {
+                Some("give numbers near which scenes can be built")
+            }
             Self::Start(error) => error.advice(),
             Self::Step { source, .. } | Self::Equations { source, .. } => source.advice(),
             Self::Method { .. } => Some("use BDF2, implicit Euler or a search for equilibria"),
@@ -137,7 +143,9 @@ impl Advice for AdjointError {
                 Some("the state is near a branch: end the run before it, or ask for less accuracy")
             }
             Self::Linalg { .. } => None,
-            Self::OtherSheet { .. } => Some("keep mesh and pinned vertices the same for all numbers"),
+            Self::OtherSheet { .. } => {
+                Some("keep mesh and pinned vertices the same for all numbers")
+            }
             Self::LossLength { .. } => Some("give three derivatives for each vertex"),
             Self::NotRepeated { .. } => Some("build the same scene each time it is asked for"),
             Self::NotFinite { .. } => Some("look at the loss, and end the run before that time"),
@@ -149,7 +157,9 @@ impl Advice for AdjointError {
 fn what_happened(event: StepEvent) -> &'static str {
     match event {
         StepEvent::Fallback => "the fallback of the step control took over, which is a branch",
-        StepEvent::Restitution => "bodies met, and their velocities were corrected, which is a branch",
+        StepEvent::Restitution => {
+            "bodies met, and their velocities were corrected, which is a branch"
+        }
         _ => "something happened that has no derivative",
     }
 }

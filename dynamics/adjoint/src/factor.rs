@@ -14,6 +14,9 @@ pub(crate) const STIFFNESS: f64 = 1e12;
 const GROWTH: f64 = 10.0;
 const FIRST_SHIFT: f64 = 1e-3;
 
+/// Most systems that are not tried with the factorisation of another step.
+const MOST_SKIPPED: u32 = 16;
+
 /// Largest part of the diagonal.
 const LAST_SHIFT: f64 = 1e6;
 
@@ -38,6 +41,10 @@ pub(crate) struct Factor {
     pub(crate) h: f64,
     /// How many factorisations there were.
     pub(crate) count: usize,
+    /// Systems in a row that were not solved by the factorisation of another step, and how many of those to
+    /// come are not tried.
+    failures: u32,
+    skipped: u32,
 }
 
 impl Factor {
@@ -81,6 +88,8 @@ impl Factor {
             penalties: Vec::new(),
             h: 0.0,
             count: 0,
+            failures: 0,
+            skipped: 0,
         })
     }
 
@@ -120,6 +129,22 @@ impl Factor {
                 Err(_) => shift = FIRST_SHIFT.max(GROWTH * shift),
             }
         }
+    }
+
+    /// Iterations by the factorisation of another step that are worth while: fewer and fewer systems are tried
+    /// where that has failed.
+    pub(crate) fn patience(&mut self, patience: usize) -> usize {
+        if self.skipped > 0 {
+            self.skipped -= 1;
+            return 0;
+        }
+        patience
+    }
+
+    /// The factorisation of another step was no good.
+    pub(crate) fn give_up(&mut self) {
+        self.failures = (self.failures + 1).min(MOST_SKIPPED.ilog2());
+        self.skipped = 1 << self.failures;
     }
 
     fn assemble(&mut self, model: &SheetModel, blocks: &Blocks, rows: &Rows<'_>, shift: f64) {

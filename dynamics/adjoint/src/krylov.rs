@@ -47,7 +47,11 @@ pub(crate) fn solve(
         let mut r: Vec<f64> = b.iter().zip(&image).map(|(b, i)| b - i).collect();
         system.precondition(&mut r);
         let size = norm(&r);
-        let relative = if goal > 0.0 { size / goal * tolerance } else { 0.0 };
+        let relative = if goal > 0.0 {
+            size / goal * tolerance
+        } else {
+            0.0
+        };
         if size <= goal || iterations >= most || !size.is_finite() {
             let residual = relative;
             return Solved {

@@ -19,20 +19,24 @@ fn reached(state: &State) -> Reached<'_> {
 pub(crate) fn pull_settling(
     model: &SheetModel,
     state: &State,
-    found: &Memories,
+    (found, choices): (&Memories, &[Vec<f64>]),
     of_memory: &mut [Vec<f64>],
     of_x: &mut [f64],
     mut refuse: impl FnMut(NoDerivative),
 ) {
-    let all = model.potentials().zip(found.lists()).zip(of_memory);
-    for ((potential, found), of) in all {
+    let all = model
+        .potentials()
+        .zip(found.lists())
+        .zip(choices)
+        .zip(of_memory);
+    for (((potential, found), choices), of) in all {
         let Some(remembering) = potential.remembering() else {
             continue;
         };
         if of.iter().all(|m| *m == 0.0) && !remembering.can_yield() {
             continue;
         }
-        let pulled = remembering.pull_back_settling(reached(state), found, of, of_x);
+        let pulled = remembering.pull_back_settling(reached(state), (found, choices), of, of_x);
         if let Err(source) = pulled {
             let mut left = found.clone();
             remembering.settle(reached(state), &mut left);

@@ -224,7 +224,9 @@ fn take(
         std::mem::take(&mut *taken.lock().unwrap_or_else(PoisonError::into_inner))
     };
     simulation.set_recorder(move |step| {
-        sink.lock().unwrap_or_else(PoisonError::into_inner).push(step);
+        sink.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(step);
     });
     let mut steps = Vec::with_capacity(count);
     for number in first..first + count {

@@ -134,7 +134,10 @@ impl<'o> Sweep<'o> {
             return Ok(0.0);
         };
         let expected = state.x.len();
-        for (own, added) in [(&mut self.end.x, &share.of.x), (&mut self.end.v, &share.of.v)] {
+        for (own, added) in [
+            (&mut self.end.x, &share.of.x),
+            (&mut self.end.v, &share.of.v),
+        ] {
             if added.len() != expected {
                 return Err(AdjointError::LossLength {
                     step: n,
@@ -163,7 +166,10 @@ impl<'o> Sweep<'o> {
         let mut of_v = std::mem::take(&mut self.end.v);
         self.settle_back(step, &mut of_x)?;
         match step.kind {
-            StepKind::Motion => of_x.iter_mut().zip(&of_v).for_each(|(x, v)| *x += v / step.h),
+            StepKind::Motion => of_x
+                .iter_mut()
+                .zip(&of_v)
+                .for_each(|(x, v)| *x += v / step.h),
             // It is at rest.
             StepKind::Search => of_v.fill(0.0),
         }
@@ -215,7 +221,7 @@ impl<'o> Sweep<'o> {
         pull_settling(
             &model,
             &step.end,
-            &step.memories,
+            (&step.memories, &choices),
             &mut self.memory,
             of_x,
             |none| passed.push(none),
@@ -288,7 +294,11 @@ impl<'o> Sweep<'o> {
             equations.add_lag_products(step, level.x, &w, &mut products);
             match level.lag {
                 FrictionLag::Start => {
-                    of_start.x.iter_mut().zip(&products).for_each(|(o, p)| *o -= p);
+                    of_start
+                        .x
+                        .iter_mut()
+                        .zip(&products)
+                        .for_each(|(o, p)| *o -= p);
                 }
                 FrictionLag::Places(_) => {
                     next.iter_mut().zip(&products).for_each(|(o, p)| *o -= p);

@@ -93,8 +93,12 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         *factor = Some(own);
     }
     let own = factor.as_mut().expect("it has been made");
-    if (own.h / step.h - 1.0).abs() > STEP_CHANGE || own.penalties.len() != rows.len() {
-        own.factorize(&model, blocks, rows, step.h).map_err(failed)?;
+    let is_other = (own.h / step.h - 1.0).abs() > STEP_CHANGE;
+    let is_other = is_other || own.penalties.len() != rows.len();
+    let patience = own.patience(options.patience);
+    if is_other || patience == 0 {
+        own.factorize(&model, blocks, rows, step.h)
+            .map_err(failed)?;
         is_fresh = true;
     }
     let free = 3 * model.free_count();
@@ -122,7 +126,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
     loop {
         let most = match is_fresh {
             true => MOST_ITERATIONS,
-            false => options.patience,
+            false => patience,
         };
         let weights = operator.weights();
         solved = krylov::solve(&mut operator, &b, &weights, tolerance, most, &mut z);
@@ -130,6 +134,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         if solved.residual <= tolerance || is_fresh {
             break;
         }
+        operator.factor.give_up();
         let own = &mut *operator.factor;
         own.factorize(&model, operator.blocks, rows, step.h)
             .map_err(failed)?;

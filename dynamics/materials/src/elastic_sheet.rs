@@ -539,11 +539,17 @@ impl Remembering for ElasticSheet {
         let mut choices = Vec::new();
         if let [_, bends @ ..] = &mut memory[..] {
             for arcs in &self.arcs {
-                let slack = |part: f64| {
-                    choices.push(part);
-                    None
+                let here = At::new(state.t, state.x);
+                let slack = |face: &Face, bend: Bend, wanted: f64| {
+                    let given = face.with_slack(here, bend, wanted);
+                    let way = bend.squared - wanted;
+                    choices.push(match way == 0.0 {
+                        true => 1.0,
+                        false => (given.squared - wanted) / way,
+                    });
+                    given
                 };
-                arcs.remember_by(&self.faces, At::new(state.t, state.x), bends, slack);
+                arcs.remember_by(&self.faces, here, bends, slack);
             }
         }
         choices
@@ -554,8 +560,12 @@ impl Remembering for ElasticSheet {
             *barrier = barrier.max(self.needed_barrier(state));
             let mut choices = choices.iter().copied();
             for arcs in &self.arcs {
-                let slack = |_: f64| choices.next();
-                arcs.remember_by(&self.faces, At::new(state.t, state.x), bends, slack);
+                let here = At::new(state.t, state.x);
+                let slack = |face: &Face, bend, wanted| {
+                    let part = choices.next().unwrap_or(0.0);
+                    face.with_part(here, bend, wanted, part)
+                };
+                arcs.remember_by(&self.faces, here, bends, slack);
             }
         }
     }
@@ -587,7 +597,7 @@ impl Remembering for ElasticSheet {
     fn pull_back_settling(
         &self,
         state: Reached<'_>,
-        found: &[f64],
+        (found, choices): (&[f64], &[f64]),
         of_memory: &mut [f64],
         of_x: &mut [f64],
     ) -> Result<(), NoDerivative> {
@@ -595,9 +605,12 @@ impl Remembering for ElasticSheet {
             return Ok(());
         };
         let bends = found.get(1..).unwrap_or_default();
+        let mut choices = choices;
         for arcs in &self.arcs {
             let here = At::new(state.t, state.x);
-            arcs.pull_back(&self.faces, here, bends, of_bends, of_x);
+            let (own, others) = choices.split_at(arcs.face_count().min(choices.len()));
+            choices = others;
+            arcs.pull_back(&self.faces, here, (bends, own), of_bends, of_x);
         }
         let stays = barrier_of(found) >= self.needed_barrier(state);
         if *of_barrier == 0.0 || stays {
@@ -605,7 +618,8 @@ impl Remembering for ElasticSheet {
         }
         *of_barrier = 0.0;
         Err(NoDerivative {
-            of: "the stiffness of the barrier at the limit of the strain, which a face is near,".into(),
+            of: "the stiffness of the barrier at the limit of the strain, which a face is near,"
+                .into(),
             by: "the motion that raises it",
         })
     }
@@ -624,7 +638,8 @@ impl Remembering for ElasticSheet {
             }
         }
         let mut of_memory = of_memory.to_vec();
-        let settled = self.pull_back_settling(state, &bends, &mut of_memory, of_x);
+        let choices = self.choices(state, &bends);
+        let settled = self.pull_back_settling(state, (&bends, &choices), &mut of_memory, of_x);
         for arcs in &self.arcs {
             arcs.pull_start(&self.faces, here, &of_memory[1..], of_x);
         }

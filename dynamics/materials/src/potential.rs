@@ -201,7 +201,8 @@ pub trait Remembering {
         }
     }
 
-    /// Of [`Remembering::settle`] at a state, with the memory that it found: makes the derivatives of a
+    /// Of [`Remembering::settle`] at a state, with the memory that it found and its
+    /// [choices](Remembering::choices): makes the derivatives of a
     /// number by the memory that it left those by the memory that it found, and adds those by the positions
     /// to `of_x` (`3V`).
     ///
@@ -210,7 +211,7 @@ pub trait Remembering {
     fn pull_back_settling(
         &self,
         _state: Reached<'_>,
-        _found: &[f64],
+        _found: (&[f64], &[f64]),
         _of_memory: &mut [f64],
         _of_x: &mut [f64],
     ) -> Result<(), NoDerivative> {

@@ -3,7 +3,8 @@
 use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::potential::{
-    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
+    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, Reached, Remembering,
+    Settled,
 };
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use isosheet_motion::{Profile, ProfileError};
@@ -151,11 +152,12 @@ impl<P: Potential> Remembering for Stiffening<P> {
     fn pull_back_settling(
         &self,
         state: Reached<'_>,
-        found: &[f64],
+        found: (&[f64], &[f64]),
         of_memory: &mut [f64],
         of_x: &mut [f64],
     ) -> Result<(), NoDerivative> {
-        self.remembers().pull_back_settling(state, found, of_memory, of_x)
+        self.remembers()
+            .pull_back_settling(state, found, of_memory, of_x)
     }
 
     fn pull_back_start(

@@ -14,9 +14,9 @@
 use crate::State;
 use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
-pub use isosheet_materials::{NoDerivative, Refused};
 pub use isosheet_materials::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
 use isosheet_materials::potential::{Force, Memories};
+pub use isosheet_materials::{NoDerivative, Refused};
 use std::any::Any;
 use std::sync::Arc;
 

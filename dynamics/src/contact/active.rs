@@ -78,7 +78,11 @@ impl ActiveContact {
 
     /// The points that gap, normal and lever depend on.
     pub(super) fn points(&self) -> impl Iterator<Item = u32> + use<> {
-        let frames = self.round.into_iter().flatten().flat_map(|round| round.frame);
+        let frames = self
+            .round
+            .into_iter()
+            .flatten()
+            .flat_map(|round| round.frame);
         let own = self.vertices.into_iter().take(self.vertex_count());
         let mut points: Vec<u32> = own.chain(frames).collect();
         points.sort_unstable();

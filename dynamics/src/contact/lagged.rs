@@ -3,8 +3,8 @@
 use super::friction::coulomb;
 use super::stencil::Stencil;
 use super::{
-    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, Contact, ContactKey, ContactLaws, Coulomb,
-    CouplingSink, Course, DIFFERENCE, Friction, FrictionError, FrictionLaw, add_weighted,
+    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, Contact, ContactKey, ContactLaws,
+    Coulomb, CouplingSink, Course, DIFFERENCE, Friction, FrictionError, FrictionLaw, add_weighted,
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};

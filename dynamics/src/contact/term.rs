@@ -3,9 +3,9 @@
 use super::course::EndVelocity;
 use super::surface_points::CarriedSink;
 use super::{
-    ActiveContacts, BarrierPotential, BodyMotions, BodyPlace, Contact, ContactError, ContactLaws, ContactSet,
-    ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion, LaggedFriction, StepSpan,
-    SurfacePoints, advanced, check_values,
+    ActiveContacts, BarrierPotential, BodyMotions, BodyPlace, Contact, ContactError, ContactLaws,
+    ContactSet, ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion,
+    LaggedFriction, StepSpan, SurfacePoints, advanced, check_values,
 };
 use crate::{SheetModel, State, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
@@ -321,7 +321,12 @@ fn span(start: &StepStart<'_>) -> StepSpan {
 }
 
 /// No motion: bodies and sheet stay where they are.
-pub(super) fn at_rest<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) -> JointMotion<'a> {
+pub(super) fn at_rest<'a>(
+    bodies: &'a BodyMotions,
+    s: f64,
+    x: &'a [f64],
+    zeros: &'a [f64],
+) -> JointMotion<'a> {
     JointMotion {
         bodies,
         progress: [s; 2],

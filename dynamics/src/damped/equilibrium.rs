@@ -293,7 +293,13 @@ impl Integrator for Equilibrium {
         let none = |why| StepError::NoEquilibrium { t: end, why };
         for _ in 0..STEPS {
             let before = effort.iterations;
-            let found = match self.step(&mut scene, lengths, &mut reached, attempt.recording(), effort) {
+            let found = match self.step(
+                &mut scene,
+                lengths,
+                &mut reached,
+                attempt.recording(),
+                effort,
+            ) {
                 Ok(found) => found,
                 // Of a step that moves pins or bodies a part may be easier, and no other length.
                 Err(StepError::NotConverged { .. }) if lengths.span == 0.0 || !is_driven => {

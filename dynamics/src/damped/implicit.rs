@@ -1,10 +1,10 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
 use crate::contact::ContactTerm;
+use crate::damped::formula::StepFormula;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
-use crate::damped::formula::StepFormula;
 use crate::damped::turning::Turning;
 use crate::report::effort::SolverEffort;
 use crate::step::accepted::{StepEvent, Taken};

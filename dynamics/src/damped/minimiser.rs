@@ -24,10 +24,10 @@ use isosheet_model::TraceEvent;
 use isosheet_model::term::Exchange;
 pub(crate) use lagrangian::Stability;
 use lagrangian::{Merit, OPERATIONS};
+use nalgebra::Vector3;
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
 use problem::StepProblem;
-use nalgebra::Vector3;
 use workspace::Workspace;
 
 /// Finds the positions with the rest lengths that minimise the incremental potential of a step: a

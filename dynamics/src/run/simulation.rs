@@ -291,10 +291,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::Contact`] if the method does not support contact or the state is in contact.
-    pub fn with_contact(
-        self,
-        contact: impl Contact + 'static,
-    ) -> Result<Self, SimulationError> {
+    pub fn with_contact(self, contact: impl Contact + 'static) -> Result<Self, SimulationError> {
         self.with_boxed_contact(Box::new(contact))
     }
 

@@ -231,9 +231,7 @@ impl<'a> StepEquations<'a> {
             *own -= p;
         }
         let model = self.model;
-        model
-            .mass()
-            .apply(model.topology(), w, &mut of.prediction);
+        model.mass().apply(model.topology(), w, &mut of.prediction);
         for (rest, v) in of.rest.iter_mut().zip(of_velocities) {
             *rest -= v / step.h;
         }

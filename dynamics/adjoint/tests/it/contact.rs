@@ -68,8 +68,8 @@ fn rods_slide_down_a_plane() {
         let square = generate::isotropic_square(1, 0.1)?;
         let sheet =
             square.map_positions(|[x, y, _]| [x, y, 3.0 * x * (x - 0.03) + 2.0 * y * y + 8e-3])?;
-        let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
-            .with_acceleration([p[2], 0.0, -p[0]]);
+        let model =
+            SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?.with_acceleration([p[2], 0.0, -p[0]]);
         let floor = Obstacle::at(Shape::HalfSpace, [0.0, 0.0, 0.0])?;
         let contacts = Contacts::for_sheet(&model, [floor], Coefficients::equal(p[1]))?;
         let start = State::at_rest(sheet.positions().to_vec());
@@ -77,7 +77,14 @@ fn rods_slide_down_a_plane() {
     };
     let plan = Plan::steps(bdf2(), 5e-3, 10);
     let loss = coordinate(7, 0, 10);
-    checked("rods on a plane", &family, &[9.8, 0.2, 4.0], &plan, &loss, 1e-3);
+    checked(
+        "rods on a plane",
+        &family,
+        &[9.8, 0.2, 4.0],
+        &plan,
+        &loss,
+        1e-3,
+    );
 }
 
 /// A patch falls on another one that is held by its corners: contact of the sheet with itself.
@@ -144,8 +151,8 @@ fn a_block_slides_down_an_inclined_plane() {
         let surface = Sheet::new((0..8).flat_map(corner).collect(), &FACES)?;
         let tetrahedron = body.tetrahedron();
         let masses = MassMatrix::from_vertex_masses(body.mass_matrix().vertex)?;
-        let model = SheetModel::with_mass(&tetrahedron, masses)?
-            .with_acceleration([0.0, 0.0, -p[0]]);
+        let model =
+            SheetModel::with_mass(&tetrahedron, masses)?.with_acceleration([0.0, 0.0, -p[0]]);
         let corners = surface.positions().as_chunks::<3>().0.iter();
         let carried = corners.map(|p| body.carried(*p, VertexId(0)));
         let points = SurfacePoints::new(4, 0, carried.collect())?;
@@ -159,9 +166,20 @@ fn a_block_slides_down_an_inclined_plane() {
     let plan = Plan::steps(bdf2(), 4e-3, 12);
     let loss = coordinate(0, 0, 12);
     let name = "a block on a plane";
-    checked(name, &|p: &[f64]| family(&[p[0], p[1], 0.5]), &[9.8, 0.2], &plan, &loss, 1e-3);
+    checked(
+        name,
+        &|p: &[f64]| family(&[p[0], p[1], 0.5]),
+        &[9.8, 0.2],
+        &plan,
+        &loss,
+        1e-3,
+    );
     // The motion does not depend on the mass, but by the barrier, which carries it alike.
     let run = Run::record(&family, &[9.8, 0.2, 0.5], plan, AdjointOptions::default());
     let gradient = run.expect("a run").gradient(&loss).expect("a gradient");
-    assert!(gradient.of_numbers[2].abs() < 1e-10, "{:?}", gradient.of_numbers);
+    assert!(
+        gradient.of_numbers[2].abs() < 1e-10,
+        "{:?}",
+        gradient.of_numbers
+    );
 }

@@ -3,9 +3,9 @@
 use crate::support::{bdf2, checked, exact};
 use isosheet_adjoint::{Plan, Scene, SceneError, coordinate};
 use isosheet_dynamics::{
-    Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Material, Method,
-    MaterialDirection, NaturalTensor, PlateBending,
-    PlateStiffness, Profile, SheetModel, State, VertexLoad, Wind,
+    Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Material, MaterialDirection,
+    Method, NaturalTensor, PlateBending, PlateStiffness, Profile, SheetModel, State, VertexLoad,
+    Wind,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
@@ -36,11 +36,21 @@ fn hanging_rods() {
         let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
             .with_acceleration([0.0, push, -p[0]])
             .with_moving_pin(corner, move |t: f64| [x, y, z + lift * t * t])?;
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 8);
     let loss = coordinate(40, 2, 8);
-    checked("hanging rods", &family, &[9.8, 0.3, 0.2], &plan, &loss, 1e-6);
+    checked(
+        "hanging rods",
+        &family,
+        &[9.8, 0.3, 0.2],
+        &plan,
+        &loss,
+        1e-6,
+    );
 }
 
 /// An elastic membrane that hangs by two corners.
@@ -52,7 +62,10 @@ fn hanging_membrane() {
             .with_acceleration([0.0, 0.1, -p[0]])
             .with_pins(&[VertexId(0), VertexId(8)])?
             .with_elastic_sheet(ElasticSheet::new(&sheet, p[1], p[3])?)?;
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     for (name, method) in [
         ("hanging membrane, BDF2", bdf2()),
@@ -65,10 +78,10 @@ fn hanging_membrane() {
     }
 }
 
-/// A strip of paper that is clamped at one end and bends under its weight: rigidity, stiffness, Poisson's
+/// A strip of film that is clamped at one end and bends under its weight: rigidity, stiffness, Poisson's
 /// ratio, density.
 #[test]
-fn clamped_paper() {
+fn clamped_film() {
     let family = |p: &[f64]| -> Result<Scene, SceneError> {
         let sheet = generate::anisotropic_grid(10, 3, 0.2, 0.06)?;
         let clamp = sheet.vertices_where(|[x, _, _]| x < 0.025);
@@ -81,13 +94,22 @@ fn clamped_paper() {
             .clamped(&clamp)
             .build()?
             .with_acceleration([0.0, 0.0, -p[4]]);
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
-    let paper = Material::office_paper();
-    let numbers = [paper.rigidity, paper.stiffness, paper.poisson, paper.density, 9.8];
+    let film = film();
+    let numbers = [
+        film.rigidity,
+        film.stiffness,
+        film.poisson,
+        film.density,
+        9.8,
+    ];
     for (name, method, h) in [
-        ("clamped paper, BDF2", bdf2(), 1e-2),
-        ("clamped paper, at rest", Method::Equilibrium(exact()), 1.0),
+        ("clamped film, BDF2", bdf2(), 1e-2),
+        ("clamped film, at rest", Method::Equilibrium(exact()), 1.0),
     ] {
         let count = if h < 1.0 { 10 } else { 1 };
         let plan = Plan::steps(method, h, count);
@@ -109,11 +131,21 @@ fn rods_with_a_plate() {
             .with_gravity()
             .with_pins(&[VertexId(0)])?
             .with_potential(PlateBending::new(&sheet, plate)?);
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 6);
     let loss = coordinate(40, 2, 6);
-    checked("rods with a plate", &family, &[5e-4, 0.3], &plan, &loss, 1e-6);
+    checked(
+        "rods with a plate",
+        &family,
+        &[5e-4, 0.3],
+        &plan,
+        &loss,
+        1e-6,
+    );
 }
 
 /// A strip whose end is pulled and turned by moving pins, with a load on its middle: the numbers of the
@@ -135,7 +167,11 @@ fn pulled_and_turned() {
                 let angle: f64 = turn * t * t;
                 let (sin, cos) = angle.sin_cos();
                 let arm = x - 0.19;
-                [x - arm + arm * cos - 0.2 * t * t, y, z + lift * t * t + arm * sin]
+                [
+                    x - arm + arm * cos - 0.2 * t * t,
+                    y,
+                    z + lift * t * t + arm * sin,
+                ]
             })?;
         }
         let middle = sheet.vertices_where(|[x, _, _]| (x - 0.1).abs() < 1e-6);
@@ -147,11 +183,21 @@ fn pulled_and_turned() {
         };
         let load = VertexLoad::new(sheet.topology(), &middle, [0.0, 0.3, 1.0], size)?;
         let model = model.with_force(load);
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 10);
     let loss = coordinate(5, 2, 10);
-    checked("pulled and turned", &family, &[0.5, 2.0, 1e-3], &plan, &loss, 1e-6);
+    checked(
+        "pulled and turned",
+        &family,
+        &[0.5, 2.0, 1e-3],
+        &plan,
+        &loss,
+        1e-6,
+    );
 }
 
 /// A sheet that folds at a crease whose rest angle changes, with the curl of its halves.
@@ -162,7 +208,9 @@ fn folded_and_curled() {
         let clamp = sheet.vertices_where(|[x, _, _]| x < 0.025);
         let t = sheet.topology();
         let on_line = |v: VertexId| (sheet.position(v)[0] - 0.08).abs() < 1e-9;
-        let edges = t.edge_ids().filter(|e| t.edges()[e.index()].iter().all(|v| on_line(*v)));
+        let edges = t
+            .edge_ids()
+            .filter(|e| t.edges()[e.index()].iter().all(|v| on_line(*v)));
         let edges: Vec<_> = edges.filter(|e| !t.is_boundary_edge(*e)).collect();
         let springs = edges.iter().map(|edge| CreaseSpring {
             edge: *edge,
@@ -193,7 +241,10 @@ fn folded_and_curled() {
             .build()?
             .with_gravity()
             .with_potential(springs);
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 10);
     let loss = coordinate(8, 2, 10);
@@ -205,15 +256,17 @@ fn folded_and_curled() {
 fn another_rest_shape() {
     let family = |p: &[f64]| -> Result<Scene, SceneError> {
         let grid = generate::anisotropic_grid(8, 3, 0.16, 0.06)?;
-        let sheet = grid.map_positions(|[x, y, z]| {
-            [x * (1.0 + p[0] * y), y + p[1] * x * x * (0.16 - x), z]
-        })?;
+        let sheet = grid
+            .map_positions(|[x, y, z]| [x * (1.0 + p[0] * y), y + p[1] * x * x * (0.16 - x), z])?;
         let clamp = grid.vertices_where(|[x, _, _]| x < 0.025);
         let model = SheetModel::of_material(&sheet, &film())
             .clamped(&clamp)
             .build()?
             .with_gravity();
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
     let loss = coordinate(8, 2, 8);
@@ -232,7 +285,10 @@ fn swollen() {
             .swelling(p[0])
             .build()?
             .with_gravity();
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
     let loss = coordinate(8, 2, 8);
@@ -257,7 +313,10 @@ fn in_the_wind() {
             .with_elastic_sheet(ElasticSheet::new(&sheet, 300.0, 0.3)?)?
             .with_damping(p[2])?
             .with_air(air)?;
-        Ok(Scene::new(model, State::at_rest(sheet.positions().to_vec())))
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 10);
     let loss = coordinate(40, 1, 10);
@@ -286,7 +345,10 @@ fn the_state_at_the_start() {
     let numbers = [1e-4, 0.1, 2e-4];
     let gradient = checked("start", &family, &numbers, &plan, &loss, 1e-6);
     let of = &gradient.of_start;
-    for (found, expected) in [of.x[26], of.v[26], of.x[5]].iter().zip(&gradient.of_numbers) {
+    for (found, expected) in [of.x[26], of.v[26], of.x[5]]
+        .iter()
+        .zip(&gradient.of_numbers)
+    {
         assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     }
 }

@@ -27,7 +27,15 @@ pub(crate) fn checked(
     loss: &dyn Loss,
     bound: f64,
 ) -> Gradient {
-    checked_with(AdjointOptions::default(), name, family, numbers, plan, loss, bound)
+    checked_with(
+        AdjointOptions::default(),
+        name,
+        family,
+        numbers,
+        plan,
+        loss,
+        bound,
+    )
 }
 
 /// As [`checked`], with options.

@@ -86,17 +86,18 @@ impl Arcs {
     /// Each has the slack of the bend of that face around it which bends most, as far as the tension around
     /// it leaves it.
     pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
-        self.remember_by(faces, here, memory, |_| None);
+        let slack = |face: &Face, bend, wanted| face.with_slack(here, bend, wanted);
+        self.remember_by(faces, here, memory, slack);
     }
 
-    /// As [`Arcs::remember`]; `choose` is told which part of the way from the slack that is wanted to the
-    /// slack that there was each face is left, and may name another one.
+    /// As [`Arcs::remember`]; `slack` gives each face its slack, by its bend and the squared bend that it is
+    /// wanted for.
     pub(super) fn remember_by(
         &self,
         faces: &[Face],
         here: At<'_>,
         memory: &mut [f64],
-        mut choose: impl FnMut(f64) -> Option<f64>,
+        mut slack: impl FnMut(&Face, Bend, f64) -> Bend,
     ) {
         let own = &faces[self.faces.clone()];
         let rows = self.rows(memory);
@@ -125,16 +126,7 @@ impl Arcs {
                     |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
                 let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
                 let bend = Bend::remembered(&rows[k]);
-                let mut given = own[k].with_slack(here, bend, wanted);
-                let way = bend.squared - wanted;
-                let part = match way == 0.0 {
-                    true => 1.0,
-                    false => (given.squared - wanted) / way,
-                };
-                if let Some(part) = choose(part) {
-                    given = own[k].with_part(here, bend, wanted, part);
-                }
-                rows[k] = given.numbers();
+                rows[k] = slack(&own[k], bend, wanted).numbers();
             }
         });
     }

@@ -44,7 +44,11 @@ fn what_is_remembered_has_its_derivatives() {
         elastic.settle(at(&second, &v), &mut found);
         let choices = elastic.choices(at(&third, &v), &found);
         let closes = choices.iter().filter(|part| **part > 0.0 && **part < 1.0);
-        println!("seed {seed}: {} of {} are bounded", closes.count(), choices.len());
+        println!(
+            "seed {seed}: {} of {} are bounded",
+            closes.count(),
+            choices.len()
+        );
         let settled = |x: &[f64], found: &[f64]| {
             let mut memory = found.to_vec();
             elastic.settle_by(&choices, at(x, &v), &mut memory);
@@ -61,10 +65,11 @@ fn what_is_remembered_has_its_derivatives() {
             for row in of[1..].as_chunks_mut::<NUMBERS>().0 {
                 row[kind] = random();
             }
-            let number = |memory: &[f64]| -> f64 { of.iter().zip(memory).map(|(o, m)| o * m).sum() };
+            let number =
+                |memory: &[f64]| -> f64 { of.iter().zip(memory).map(|(o, m)| o * m).sum() };
             let (mut of_found, mut of_x) = (of.clone(), vec![0.0; third.len()]);
             elastic
-                .pull_back_settling(at(&third, &v), &found, &mut of_found, &mut of_x)
+                .pull_back_settling(at(&third, &v), (&found, &choices), &mut of_found, &mut of_x)
                 .expect("a derivative");
             let difference = |by: &mut dyn FnMut(f64) -> f64, step: f64| {
                 (8.0 * (by(step) - by(-step)) - (by(2.0 * step) - by(-2.0 * step))) / (12.0 * step)
@@ -72,7 +77,11 @@ fn what_is_remembered_has_its_derivatives() {
             let direction: Vec<f64> = third.iter().map(|_| random()).collect();
             let slope: f64 = direction.iter().zip(&of_x).map(|(d, o)| d * o).sum();
             let mut along = |s: f64| {
-                let x: Vec<f64> = third.iter().zip(&direction).map(|(x, d)| x + s * d).collect();
+                let x: Vec<f64> = third
+                    .iter()
+                    .zip(&direction)
+                    .map(|(x, d)| x + s * d)
+                    .collect();
                 number(&settled(&x, &found))
             };
             let expected = difference(&mut along, 1e-9);
@@ -88,8 +97,11 @@ fn what_is_remembered_has_its_derivatives() {
                     .collect();
                 let slope: f64 = direction.iter().zip(&of_found).map(|(d, o)| d * o).sum();
                 let mut along = |s: f64| {
-                    let moved: Vec<f64> =
-                        found.iter().zip(&direction).map(|(m, d)| m + s * d).collect();
+                    let moved: Vec<f64> = found
+                        .iter()
+                        .zip(&direction)
+                        .map(|(m, d)| m + s * d)
+                        .collect();
                     number(&settled(&third, &moved))
                 };
                 let expected = difference(&mut along, 1e-5);

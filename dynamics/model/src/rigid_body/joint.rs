@@ -3,8 +3,8 @@
 use crate::StepError;
 use crate::sheet_model::SheetModel;
 use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
-use isosheet_materials::NoDerivative;
 use isosheet_materials::HessianSink;
+use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::{At, Force, Potential, Reached, Remembering, Settled};
 use isosheet_materials::vectors::{add, point};
@@ -226,7 +226,7 @@ impl Remembering for JointSpring {
     fn pull_back_settling(
         &self,
         _state: Reached<'_>,
-        _found: &[f64],
+        _found: (&[f64], &[f64]),
         of_memory: &mut [f64],
         _of_x: &mut [f64],
     ) -> Result<(), NoDerivative> {

@@ -15,13 +15,19 @@ struct OfBends {
 }
 
 impl Arcs {
-    /// Of [`Arcs::remember`] with the numbers `found` that were remembered before it, of all faces: makes the
+    /// Number of its faces.
+    pub(in super::super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Of [`Arcs::remember`] with the numbers `found` that were remembered before it, of all faces, and with
+    /// the parts of the way that its own faces chose: makes the
     /// derivatives of a number by what it leaves those by what it found, and adds those by the positions.
     pub(in super::super) fn pull_back(
         &self,
         faces: &[Face],
         here: At<'_>,
-        found: &[f64],
+        (found, choices): (&[f64], &[f64]),
         of: &mut [f64],
         of_x: &mut [f64],
     ) {
@@ -62,14 +68,18 @@ impl Arcs {
                 false => a,
             });
             let Some(most) = most else { continue };
-            let mean = |which: usize| {
-                largest_of_mean(around, |f| (own[f].area(), stresses[f][which]))
-            };
+            let mean =
+                |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
             let means = [mean(0), mean(1)];
             let which = usize::from(means[1] < means[0]);
             let part = own[k].left_by(means[which]);
             let wanted = part * bends[most].own;
-            let of_slack = own[k].pull_slack(here, bend, wanted, [given.squared, given.credit]);
+            let of_slack = own[k].pull_slack(
+                here,
+                bend,
+                (wanted, choices[k]),
+                [given.squared, given.credit],
+            );
             left[k][4] += of_slack.squared;
             left[k][5] += given.credit;
             of_bends.errors[k] += of_slack.beyond;

@@ -89,16 +89,16 @@ impl Face {
     }
 
     /// Of [`Face::with_slack`] with derivatives of a number by the squared bend and the credit that it
-    /// gives. Where the slack that is wanted cannot be paid for, the part of the way to it that bisection has
-    /// found counts as constant.
+    /// gives. Where the slack that is wanted cannot be paid for, the part of the way from it to what there
+    /// was, which bisection has found, counts as constant.
     pub(in super::super) fn pull_slack(
         &self,
         here: At<'_>,
         bend: Bend,
-        wanted: f64,
+        (wanted, part): (f64, f64),
         [of_squared, of_credit]: [f64; 2],
     ) -> OfSlack {
-        let given = self.with_slack(here, bend, wanted).squared;
+        let given = wanted + part * (bend.squared - wanted);
         if wanted == bend.squared {
             return OfSlack {
                 squared: of_squared,
@@ -106,8 +106,6 @@ impl Face {
             };
         }
         let at = self.at(here, &bend);
-        // Of the way from what is wanted to what there was.
-        let part = (given - wanted) / (bend.squared - wanted);
         let of_given = of_squared - of_credit * self.energy_by_bend(&at, given);
         let slope = |squared: f64| self.area * self.law_with(&at, squared, |law| law.slope());
         OfSlack {
