@@ -63,6 +63,7 @@ mod linear;
 mod objective;
 mod report;
 mod run;
+pub mod sensitivity;
 mod step;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;

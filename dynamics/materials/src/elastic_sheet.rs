@@ -6,6 +6,8 @@ mod bend;
 mod bend_tests;
 mod curved;
 #[cfg(test)]
+mod derivative_tests;
+#[cfg(test)]
 mod direction_tests;
 mod error;
 mod evaluated;
@@ -20,6 +22,7 @@ mod swelling;
 #[cfg(test)]
 mod tests;
 
+use crate::derivative::NoDerivative;
 use crate::limit_error::LimitError;
 use crate::potential::{At, Limited, Reached, Remembering, Settled};
 use crate::{HessianSink, Potential};
@@ -28,7 +31,7 @@ use isosheet_motion::Profile;
 use super::patched::Patched;
 use super::plate_bending::PlateBending;
 use arcs::Arcs;
-use bend::NUMBERS;
+use bend::{Bend, NUMBERS};
 pub use curved::CurvedFace;
 pub use error::ElasticSheetError;
 use evaluated::{EvaluatedFaces, barrier_of, strained};
@@ -414,6 +417,19 @@ impl ElasticSheet {
     }
 }
 
+impl ElasticSheet {
+    /// The stiffness of the barrier that a state asks for, joules per square metre.
+    fn needed_barrier(&self, state: Reached<'_>) -> f64 {
+        let own = 3 * self.vertices.start..3 * self.vertices.end;
+        let (x, v) = (&state.x[own.clone()], &state.v[own]);
+        strain_barrier(
+            self.mass / self.area(),
+            self.acceleration,
+            Reached { x, v, ..state },
+        )
+    }
+}
+
 impl Potential for ElasticSheet {
     fn energy(&self, at: At<'_>) -> f64 {
         self.evaluated.evaluate(&self.faces, at, |states| {
@@ -517,6 +533,119 @@ impl Remembering for ElasticSheet {
         self.settle(state, memory);
     }
 
+    /// Of each face the part of the way from the slack that is wanted to the slack that there was.
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        let mut memory = memory.to_vec();
+        let mut choices = Vec::new();
+        if let [_, bends @ ..] = &mut memory[..] {
+            for arcs in &self.arcs {
+                let here = At::new(state.t, state.x);
+                let slack = |face: &Face, bend: Bend, wanted: f64| {
+                    let given = face.with_slack(here, bend, wanted);
+                    let way = bend.squared - wanted;
+                    choices.push(match way == 0.0 {
+                        true => 1.0,
+                        false => (given.squared - wanted) / way,
+                    });
+                    given
+                };
+                arcs.remember_by(&self.faces, here, bends, slack);
+            }
+        }
+        choices
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        if let [barrier, bends @ ..] = memory {
+            *barrier = barrier.max(self.needed_barrier(state));
+            let mut choices = choices.iter().copied();
+            for arcs in &self.arcs {
+                let here = At::new(state.t, state.x);
+                let slack = |face: &Face, bend, wanted| {
+                    let part = choices.next().unwrap_or(0.0);
+                    face.with_part(here, bend, wanted, part)
+                };
+                arcs.remember_by(&self.faces, here, bends, slack);
+            }
+        }
+    }
+
+    fn add_memory_products(
+        &self,
+        at: At<'_>,
+        w: &[f64],
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let barrier = barrier_of(at.memory);
+        let [of_barrier, of_bends @ ..] = of_memory else {
+            return Ok(());
+        };
+        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
+        let rows = of_bends.as_chunks_mut::<NUMBERS>().0.iter_mut();
+        for ((face, bend), row) in self.faces.iter().zip(bends).zip(rows) {
+            let bend = Bend::remembered(bend);
+            let (chords, squared, stiffness) = face.products(at, &bend, barrier, w);
+            *of_barrier += stiffness;
+            if !self.arcs.is_empty() {
+                row.iter_mut().zip(&chords).for_each(|(r, c)| *r += c);
+                row[4] += squared;
+            }
+        }
+        Ok(())
+    }
+
+    fn pull_back_settling(
+        &self,
+        state: Reached<'_>,
+        (found, choices): (&[f64], &[f64]),
+        of_memory: &mut [f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let [of_barrier, of_bends @ ..] = of_memory else {
+            return Ok(());
+        };
+        let bends = found.get(1..).unwrap_or_default();
+        let mut choices = choices;
+        for arcs in &self.arcs {
+            let here = At::new(state.t, state.x);
+            let (own, others) = choices.split_at(arcs.face_count().min(choices.len()));
+            choices = others;
+            arcs.pull_back(&self.faces, here, (bends, own), of_bends, of_x);
+        }
+        let stays = barrier_of(found) >= self.needed_barrier(state);
+        if *of_barrier == 0.0 || stays {
+            return Ok(());
+        }
+        *of_barrier = 0.0;
+        Err(NoDerivative {
+            of: "the stiffness of the barrier at the limit of the strain, which a face is near,"
+                .into(),
+            by: "the motion that raises it",
+        })
+    }
+
+    fn pull_back_start(
+        &self,
+        state: Reached<'_>,
+        of_memory: &[f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let here = At::new(state.t, state.x);
+        let mut bends = self.memory();
+        if let [_, bends @ ..] = &mut bends[..] {
+            for arcs in &self.arcs {
+                arcs.start(&self.faces, here, bends);
+            }
+        }
+        let mut of_memory = of_memory.to_vec();
+        let choices = self.choices(state, &bends);
+        let settled = self.pull_back_settling(state, (&bends, &choices), &mut of_memory, of_x);
+        for arcs in &self.arcs {
+            arcs.pull_start(&self.faces, here, &of_memory[1..], of_x);
+        }
+        settled
+    }
+
     /// Raises the stiffness of the barrier to what the state asks for, and remembers how the sheet bends,
     /// which is work.
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
@@ -525,13 +654,7 @@ impl Remembering for ElasticSheet {
         let [barrier, bends @ ..] = memory else {
             return Settled::default();
         };
-        let own = 3 * self.vertices.start..3 * self.vertices.end;
-        let (x, v) = (&state.x[own.clone()], &state.v[own]);
-        let needed = strain_barrier(
-            self.mass / self.area(),
-            self.acceleration,
-            Reached { x, v, ..state },
-        );
+        let needed = self.needed_barrier(state);
         *barrier = barrier.max(needed);
         for arcs in &self.arcs {
             arcs.remember(&self.faces, At::new(state.t, state.x), bends);

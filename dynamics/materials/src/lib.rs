@@ -18,6 +18,7 @@
 //! SI units; positions and forces are slices of length `3V`; fold angles are positive for valleys.
 
 mod crease;
+mod derivative;
 mod direction;
 mod elastic_sheet;
 mod evaluation;
@@ -37,6 +38,7 @@ mod testing;
 pub mod vectors;
 
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle, folding_from_flat};
+pub use derivative::NoDerivative;
 pub use direction::{DirectionError, MaterialDirection};
 pub use elastic_sheet::{
     CurvedFace, ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane, StrainOfFace,
@@ -53,8 +55,8 @@ pub use plate_bending::{
     PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
 pub use potential::{
-    At, CouplingKind, Force, Gravity, Limited, MaterialReport, Memories, PAPER_GRAVITY, Potential,
-    PotentialShape, Reached, Remembering, Settled,
+    At, CouplingKind, Force, Gravity, HessianKind, Limited, MaterialReport, Memories,
+    PAPER_GRAVITY, Potential, PotentialShape, Reached, Remembering, Settled,
 };
 pub use stiffening::Stiffening;
 

@@ -24,7 +24,7 @@ mod tests;
 
 use super::patched::Patched;
 use super::plasticity::Yield;
-use crate::potential::{At, MaterialReport, Reached, Remembering, Settled};
+use crate::potential::{At, HessianKind, MaterialReport, Reached, Remembering, Settled};
 use crate::{HessianSink, Potential};
 pub use error::{CurlError, PlateBendingError};
 pub use face_curvature::FaceCurvature;
@@ -429,6 +429,13 @@ impl Potential for PlateBending {
         }
         for (k, ([a, b], value)) in self.at_pairs.iter().enumerate() {
             hessian.add_pair(*a, *b, &block(*value, |b| &b.at_pairs, k));
+        }
+    }
+
+    fn hessian_kind(&self) -> HessianKind {
+        match self.stress_free {
+            None => HessianKind::Exact,
+            Some(_) => HessianKind::Partial,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
+use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::limit_error::LimitError;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
@@ -67,6 +68,12 @@ pub trait Potential: Debug + Send + Sync {
 
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
+
+    /// How [`Potential::add_hessian`] is to be taken by whoever needs all second derivatives. The default
+    /// says that they are there.
+    fn hessian_kind(&self) -> HessianKind {
+        HessianKind::Exact
+    }
 
     /// Adds a positive semidefinite part of the second derivatives, for minimisations where the whole Hessian
     /// is indefinite. The default adds what [`Potential::add_hessian`] adds; where that is indefinite too,
@@ -163,6 +170,72 @@ pub trait Remembering {
     /// step is refused. The default leaves it.
     fn settle(&self, _state: Reached<'_>, _memory: &mut [f64]) -> Settled {
         Settled::default()
+    }
+
+    /// What [`Remembering::settle`] chooses at a state with a memory, where it would choose otherwise by the
+    /// slightest change: numbers that say so to [`Remembering::settle_by`]. The default chooses nothing.
+    fn choices(&self, _state: Reached<'_>, _memory: &[f64]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// As [`Remembering::settle`], with the choices of a potential that is nearly the same. The default has
+    /// none.
+    fn settle_by(&self, _choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.settle(state, memory);
+    }
+
+    /// Adds to `of_memory` the derivatives of `w . dV/dx` by the numbers of the memory, with the vector `w`
+    /// (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn add_memory_products(
+        &self,
+        _at: At<'_>,
+        _w: &[f64],
+        _of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("what it remembers")),
+        }
+    }
+
+    /// Of [`Remembering::settle`] at a state, with the memory that it found and its
+    /// [choices](Remembering::choices): makes the derivatives of a
+    /// number by the memory that it left those by the memory that it found, and adds those by the positions
+    /// to `of_x` (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn pull_back_settling(
+        &self,
+        _state: Reached<'_>,
+        _found: (&[f64], &[f64]),
+        _of_memory: &mut [f64],
+        _of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("what it remembers")),
+        }
+    }
+
+    /// Adds to `of_x` (`3V`) the derivatives of a number by the positions at a state where a simulation starts,
+    /// of which those by the memory that [`Remembering::start`] makes there are `of_memory`.
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn pull_back_start(
+        &self,
+        _state: Reached<'_>,
+        _of_memory: &[f64],
+        _of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("where a run starts")),
+        }
     }
 
     /// Whether the memory is that of a material that yields. Such potentials are for methods that minimise
@@ -324,6 +397,10 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).add_semidefinite_hessian(at, hessian);
     }
 
+    fn hessian_kind(&self) -> HessianKind {
+        (**self).hessian_kind()
+    }
+
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         (**self).couplings()
     }
@@ -365,6 +442,15 @@ pub enum CouplingKind {
     Soft,
     /// So stiff that conjugate gradients would not converge without them.
     Stiff,
+}
+
+/// Whether a Hessian has all second derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HessianKind {
+    /// It has.
+    Exact,
+    /// Some are left out, as far as they are not needed to minimise.
+    Partial,
 }
 
 /// How a potential depends on the positions.
@@ -437,6 +523,23 @@ impl Potential for Gravity {
 pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);
+
+    /// Adds to `of_x` and `of_v` (`3V`) the derivatives of `w . f` by positions and velocities, with the
+    /// vector `w` (`3V`).
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default.
+    fn add_state_products(
+        &self,
+        _t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        _w: &[f64],
+        _of_x: &mut [f64],
+        _of_v: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Err(NoDerivative::of_type::<Self>("positions and velocities"))
+    }
 }
 
 #[cfg(test)]

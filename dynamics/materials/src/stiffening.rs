@@ -1,8 +1,10 @@
 //! Stiffness that changes by itself.
 
+use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::potential::{
-    At, CouplingKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
+    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, Reached, Remembering,
+    Settled,
 };
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use isosheet_motion::{Profile, ProfileError};
@@ -72,6 +74,10 @@ impl<P: Potential> Potential for Stiffening<P> {
         self.potential.add_semidefinite_hessian(at, hessian);
     }
 
+    fn hessian_kind(&self) -> HessianKind {
+        self.potential.hessian_kind()
+    }
+
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         self.potential.couplings()
     }
@@ -122,6 +128,45 @@ impl<P: Potential> Remembering for Stiffening<P> {
         let Settled { dissipated, work } = self.remembers().settle(state, memory);
         let [dissipated, work] = [dissipated, work].map(|part| self.factor.value(state.t) * part);
         Settled { dissipated, work }
+    }
+
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        self.remembers().choices(state, memory)
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.remembers().settle_by(choices, state, memory);
+    }
+
+    fn add_memory_products(
+        &self,
+        at: At<'_>,
+        w: &[f64],
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let factor = self.factor.value(at.t);
+        let w: Vec<f64> = w.iter().map(|w| factor * w).collect();
+        self.remembers().add_memory_products(at, &w, of_memory)
+    }
+
+    fn pull_back_settling(
+        &self,
+        state: Reached<'_>,
+        found: (&[f64], &[f64]),
+        of_memory: &mut [f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        self.remembers()
+            .pull_back_settling(state, found, of_memory, of_x)
+    }
+
+    fn pull_back_start(
+        &self,
+        state: Reached<'_>,
+        of_memory: &[f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        self.remembers().pull_back_start(state, of_memory, of_x)
     }
 
     fn can_yield(&self) -> bool {

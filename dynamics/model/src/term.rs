@@ -14,9 +14,9 @@
 use crate::State;
 use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
-pub use isosheet_materials::Refused;
 pub use isosheet_materials::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
 use isosheet_materials::potential::{Force, Memories};
+pub use isosheet_materials::{NoDerivative, Refused};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -196,6 +196,22 @@ pub trait Term: Any + Send {
         false
     }
 
+    /// Adds `scale` times the derivatives of `w . g`, with the gradient `g` at the iterate and the vector `w`
+    /// (`3V`), by what the step starts from, with what lags at the iterate.
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default.
+    fn add_start_products(
+        &mut self,
+        _step: &StepStart<'_>,
+        _at: Iterate<'_>,
+        _w: &[f64],
+        _scale: f64,
+        _out: &mut StartProducts,
+    ) -> Result<(), NoDerivative> {
+        Err(NoDerivative::of_type::<Self>("what a step starts from"))
+    }
+
     /// Number of contacts that are active.
     fn contact_count(&self) -> usize {
         0
@@ -292,6 +308,33 @@ impl StepStart<'_> {
             }
         }
         Exchange::driven(work)
+    }
+}
+
+/// Derivatives of a number by what a step starts from, `3V` each, per metre.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StartProducts {
+    /// By the positions at the start.
+    pub start: Vec<f64>,
+    /// By [`StepStart::rest`].
+    pub rest: Vec<f64>,
+    /// By [`StepStart::ahead`].
+    pub ahead: Vec<f64>,
+    /// By the positions at the end, as far as they are in the gradient and not in the Hessian: of forces that
+    /// have no energy.
+    pub end: Vec<f64>,
+}
+
+impl StartProducts {
+    /// Zeros for so many coordinates.
+    pub fn zeros(n: usize) -> Self {
+        let zeros = || vec![0.0; n];
+        Self {
+            start: zeros(),
+            rest: zeros(),
+            ahead: zeros(),
+            end: zeros(),
+        }
     }
 }
 

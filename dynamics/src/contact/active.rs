@@ -76,6 +76,20 @@ impl ActiveContact {
         }
     }
 
+    /// The points that gap, normal and lever depend on.
+    pub(super) fn points(&self) -> impl Iterator<Item = u32> + use<> {
+        let frames = self
+            .round
+            .into_iter()
+            .flatten()
+            .flat_map(|round| round.frame);
+        let own = self.vertices.into_iter().take(self.vertex_count());
+        let mut points: Vec<u32> = own.chain(frames).collect();
+        points.sort_unstable();
+        points.dedup();
+        points.into_iter()
+    }
+
     /// The vertices of the sheet that take part.
     pub fn corners(&self) -> &[u32] {
         &self.vertices[..self.vertex_count()]

@@ -3,8 +3,8 @@
 use super::friction::coulomb;
 use super::stencil::Stencil;
 use super::{
-    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws, Coulomb,
-    CouplingSink, Course, Friction, FrictionError, FrictionLaw, add_weighted,
+    ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, Contact, ContactKey, ContactLaws,
+    Coulomb, CouplingSink, Course, DIFFERENCE, Friction, FrictionError, FrictionLaw, add_weighted,
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -51,6 +51,15 @@ enum LawOfContact {
         /// Effective step over the length of the step.
         part: f64,
     },
+}
+
+/// The relative motion at a contact that displacements `w` of the points make.
+fn weighted(stencil: &Stencil, w: &[f64]) -> Vector3<f64> {
+    let motion = |(v, weight): (u32, f64)| {
+        let i = 3 * v as usize;
+        weight * Vector3::new(w[i], w[i + 1], w[i + 2])
+    };
+    stencil.iter().map(motion).sum()
 }
 
 impl FrictionContact {
@@ -131,6 +140,21 @@ impl Sliding<'_> {
     /// `mu / |u|`, one over metres.
     fn ratio(&self) -> f64 {
         self.law.coefficient_over_speed(self.speed()) / self.tau
+    }
+
+    /// The second derivatives of the potential by the slip.
+    fn tangent(&self) -> Matrix3<f64> {
+        let contact = self.contact;
+        let (u, n) = (&self.slip, &contact.normal);
+        let ratio = contact.force * self.ratio();
+        let mut block = ratio * (Matrix3::identity() - n * n.transpose());
+        let y = u.norm();
+        if y > 0.0 {
+            let t = u / y;
+            let slope = contact.force * self.law.slope(self.speed()) / self.tau;
+            block += (slope - ratio) * t * t.transpose();
+        }
+        block
     }
 
     /// The Hessian of the potential; for a law that falls, its slope is replaced by zero where it is
@@ -424,6 +448,91 @@ impl LaggedFriction {
     pub fn add_hessian(&self, x: &[f64], bodies: &[BodyPlace], sink: &mut dyn CouplingSink) {
         self.all(x, bodies)
             .for_each(|sliding| sliding.hessian(sink));
+    }
+
+    /// Adds the second derivatives of `D` (newtons per metre), which are indefinite for a law that falls.
+    pub(super) fn add_tangent(&self, x: &[f64], bodies: &[BodyPlace], sink: &mut dyn CouplingSink) {
+        for sliding in self.all(x, bodies) {
+            let stencil = &sliding.contact.stencil;
+            add_weighted(
+                stencil.points(),
+                stencil.weights(),
+                &sliding.tangent(),
+                sink,
+            );
+        }
+    }
+
+    /// Adds `scale` times the derivatives of `w . dD/dx`, with a vector `w` of the points, by the positions
+    /// from which slips are measured: to `of_start` for Coulomb's law, to `of_rest` for others.
+    pub(super) fn add_start_products(
+        &self,
+        x: &[f64],
+        bodies: &[BodyPlace],
+        w: &[f64],
+        scale: f64,
+        [of_start, of_rest]: [&mut [f64]; 2],
+    ) {
+        for sliding in self.all(x, bodies) {
+            let stencil = &sliding.contact.stencil;
+            let product = -scale * (sliding.tangent() * weighted(stencil, w));
+            let out = match sliding.contact.law {
+                LawOfContact::Coulomb(_) => &mut *of_start,
+                LawOfContact::Other { .. } => &mut *of_rest,
+            };
+            for (v, weight) in stencil.iter() {
+                super::add_at(out, v, weight * product);
+            }
+        }
+    }
+
+    /// Adds `scale` times the derivatives of `w . dD/dx`, with a vector `w` of the points, by the positions
+    /// `y` at which friction was lagged with the bodies in their places: of each contact by central
+    /// differences of its normal, normal force and closest points.
+    pub(super) fn add_lag_products(
+        &self,
+        geometry: &dyn Contact,
+        barrier: &BarrierPotential,
+        (y, lagged_bodies): (&[f64], &[BodyPlace]),
+        (x, bodies): (&[f64], &[BodyPlace]),
+        w: &[f64],
+        scale: f64,
+        out: &mut [f64],
+    ) {
+        let mut places = y.to_vec();
+        let mut found = Vec::new();
+        for contact in &self.contacts {
+            let mut evaluate = |places: &[f64]| {
+                found.clear();
+                geometry.evaluate(&[contact.key], places, lagged_bodies, &mut found);
+                found.first().copied()
+            };
+            let Some(here) = evaluate(&places) else {
+                continue;
+            };
+            let step = DIFFERENCE * here.gap;
+            for point in here.points() {
+                for i in 3 * point as usize..3 * point as usize + 3 {
+                    let mut at = |distance: f64| {
+                        places[i] = y[i] + distance;
+                        let work = evaluate(&places).map_or(0.0, |moved| {
+                            let moved = FrictionContact::new(
+                                &moved,
+                                barrier,
+                                contact.law,
+                                &places,
+                                lagged_bodies,
+                            );
+                            let traction = self.sliding(&moved, x, bodies).traction();
+                            traction.dot(&weighted(&moved.stencil, w))
+                        });
+                        places[i] = y[i];
+                        work
+                    };
+                    out[i] += scale * (at(step) - at(-step)) / (2.0 * step);
+                }
+            }
+        }
     }
 
     /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts

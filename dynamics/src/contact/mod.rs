@@ -42,6 +42,7 @@ mod parallel;
 mod set;
 mod stencil;
 mod surface_points;
+mod tangent;
 mod term;
 mod terms;
 mod vertex_data;
@@ -64,6 +65,7 @@ pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
 pub use surface_points::{SurfacePoints, SurfacePointsError};
+pub(crate) use tangent::LagAt;
 pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};
@@ -72,6 +74,10 @@ pub(crate) use isosheet_materials::hessian::CouplingSink;
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
+
+/// Part of a gap over which derivatives of contact are central differences: they err by its square, and by the
+/// round-off of gaps over it.
+const DIFFERENCE: f64 = 1e-4;
 
 /// The geometry of contact of a sheet with bodies and with itself.
 ///

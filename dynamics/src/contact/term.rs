@@ -3,9 +3,9 @@
 use super::course::EndVelocity;
 use super::surface_points::CarriedSink;
 use super::{
-    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactLaws, ContactSet,
-    ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion, LaggedFriction, StepSpan,
-    SurfacePoints, advanced, check_values,
+    ActiveContacts, BarrierPotential, BodyMotions, BodyPlace, Contact, ContactError, ContactLaws,
+    ContactSet, ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion,
+    LaggedFriction, StepSpan, SurfacePoints, advanced, check_values,
 };
 use crate::{SheetModel, State, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
@@ -14,26 +14,26 @@ use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.
 pub(crate) struct ContactTerm {
-    geometry: Box<dyn Contact>,
+    pub(super) geometry: Box<dyn Contact>,
     /// Its stiffness is set at the start of a run.
     barrier: BarrierPotential,
     points: Option<Arc<SurfacePoints>>,
     /// The motions of the bodies that were asked for last.
     bodies: BodyMotions,
     /// What belongs to the present step; nothing before the first one.
-    step: Option<InStep>,
+    pub(super) step: Option<InStep>,
 }
 
 /// Contact in the course of a step. The contacts are evaluated where the term is asked for, and no more often
 /// than that.
-struct InStep {
-    points: Option<Arc<SurfacePoints>>,
-    bodies: BodyMotions,
+pub(super) struct InStep {
+    pub(super) points: Option<Arc<SurfacePoints>>,
+    pub(super) bodies: BodyMotions,
     /// Progress of the bodies over the step.
-    progress: f64,
+    pub(super) progress: f64,
     /// The pairs of the motion that was checked last; the iterates stay on it.
-    set: ContactSet,
-    state: ContactState,
+    pub(super) set: ContactSet,
+    pub(super) state: ContactState,
     /// Positions of the vertices at which the contacts were evaluated, unless set or bodies have changed
     /// since.
     x: Vec<f64>,
@@ -45,15 +45,20 @@ struct InStep {
     /// What was wrong with a law of friction first.
     friction_fault: Option<FrictionError>,
     /// The points at the start of the step.
-    start: Vec<f64>,
-    velocity: EndVelocity,
+    pub(super) start: Vec<f64>,
+    pub(super) velocity: EndVelocity,
     /// The points at the end of the motion that was checked last, and the contacts there.
     end: Vec<f64>,
     ahead: ActiveContacts,
     /// Work and energy of the barrier at the start of the step, joules.
     start_work: f64,
     start_energy: f64,
-    zeros: Vec<f64>,
+    pub(super) zeros: Vec<f64>,
+    /// The positions of the vertices at which friction was lagged anew, `3V`, metres.
+    lags: Vec<Vec<f64>>,
+    /// The points where friction was lagged, and the bodies there, of a step that is differentiated.
+    pub(super) lagged_at: Vec<f64>,
+    pub(super) lagged_bodies: Vec<BodyPlace>,
 }
 
 impl ContactTerm {
@@ -162,8 +167,15 @@ impl ContactTerm {
         self.step.as_ref().map(|step| &step.state)
     }
 
+    /// The positions of the vertices at which friction was lagged anew in the step, `3V`, metres.
+    pub(crate) fn lags(&self) -> Vec<Vec<f64>> {
+        self.step
+            .as_ref()
+            .map_or_else(Vec::new, |step| step.lags.clone())
+    }
+
     /// The step, with the contacts at positions `x`.
-    fn at(&mut self, x: &[f64]) -> &mut InStep {
+    pub(super) fn at(&mut self, x: &[f64]) -> &mut InStep {
         let step = self.step.as_mut().expect("a step has begun");
         if !step.is_evaluated || step.x != x {
             step.is_evaluated = true;
@@ -215,6 +227,9 @@ impl InStep {
             start_work: 0.0,
             start_energy: 0.0,
             zeros,
+            lags: Vec::new(),
+            lagged_at: Vec::new(),
+            lagged_bodies: Vec::new(),
         }
     }
 
@@ -232,12 +247,12 @@ impl InStep {
     }
 
     /// Has the contacts evaluated anew when they are asked for.
-    fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         self.is_evaluated = false;
     }
 
     /// The points where the contacts were evaluated.
-    fn places(&self) -> &[f64] {
+    pub(super) fn places(&self) -> &[f64] {
         match self.points {
             None => &self.x,
             Some(_) => &self.surface,
@@ -281,6 +296,7 @@ impl InStep {
     fn set_start(&mut self, geometry: &dyn Contact, start: &StepStart<'_>) {
         let laws = geometry.laws();
         self.friction_fault = None;
+        self.lags.clear();
         self.velocity.update(laws, self.points.as_deref(), start);
         let ContactState {
             barrier,
@@ -305,7 +321,12 @@ fn span(start: &StepStart<'_>) -> StepSpan {
 }
 
 /// No motion: bodies and sheet stay where they are.
-fn at_rest<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) -> JointMotion<'a> {
+pub(super) fn at_rest<'a>(
+    bodies: &'a BodyMotions,
+    s: f64,
+    x: &'a [f64],
+    zeros: &'a [f64],
+) -> JointMotion<'a> {
     JointMotion {
         bodies,
         progress: [s; 2],
@@ -462,8 +483,9 @@ impl Term for ContactTerm {
         let course = step.velocity.course(&step.start);
         friction.lag(self.geometry.laws(), barrier, active, course, x);
         let has_changed = friction.change_since(&step.friction_before) > settled;
-        if !has_changed {
-            std::mem::swap(friction, &mut step.friction_before);
+        match has_changed {
+            true => step.lags.push(step.x.clone()),
+            false => std::mem::swap(friction, &mut step.friction_before),
         }
         has_changed
     }

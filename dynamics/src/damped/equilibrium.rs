@@ -5,6 +5,7 @@ use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::minimiser::{Minimiser, Stability};
 use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
+use crate::step::accepted::{AcceptedStep, Recording, StepKind};
 use crate::step::integrator::{
     Attempt, Integrator, MethodTraits, Phases, Proposal, Scene, StepAccount,
 };
@@ -89,6 +90,8 @@ struct Reached {
     changed: f64,
     residual: f64,
     outcome: StepOutcome,
+    /// The steps so far, where they are handed out.
+    steps: Vec<AcceptedStep>,
 }
 
 impl Reached {
@@ -107,6 +110,7 @@ impl Reached {
             changed: 0.0,
             residual: 0.0,
             outcome: StepOutcome::Newton,
+            steps: Vec::new(),
         }
     }
 }
@@ -141,6 +145,7 @@ impl Equilibrium {
         scene: &mut Scene<'_>,
         lengths: Lengths,
         from: &mut Reached,
+        recording: Recording,
         effort: &mut SolverEffort<'_>,
     ) -> Result<Found, StepError> {
         let Lengths { span, h, first } = lengths;
@@ -182,6 +187,26 @@ impl Equilibrium {
                 x: minimiser.x().to_vec(),
                 v: start.v.clone(),
             };
+            let mut steps = std::mem::take(&mut from.steps);
+            if recording == Recording::On {
+                let contact: Option<&ContactTerm> = problem.objective.get();
+                let (rods, constraints) = minimiser.multipliers();
+                steps.push(AcceptedStep {
+                    kind: StepKind::Search,
+                    start: start.clone(),
+                    before: None,
+                    end: state.clone(),
+                    span,
+                    sliding_time: first,
+                    h,
+                    back: 0.0,
+                    memories: from.memories.clone(),
+                    rods,
+                    constraints,
+                    lags: contact.map_or_else(Vec::new, ContactTerm::lags),
+                    events: Vec::new(),
+                });
+            }
             let unbalanced = acceleration(model, &start.x, &state.x, h);
             // In steps that are shorter than the first one a disturbance seems to be a large force.
             let largest = match h >= first {
@@ -230,6 +255,7 @@ impl Equilibrium {
                 changed,
                 residual: minimum.residual,
                 outcome: from.outcome.max(minimum.outcome),
+                steps,
             }
         });
         minimiser.start = [rest, prediction, ahead];
@@ -274,7 +300,13 @@ impl Integrator for Equilibrium {
         let none = |why| StepError::NoEquilibrium { t: end, why };
         for _ in 0..STEPS {
             let before = effort.iterations;
-            let found = match self.step(&mut scene, lengths, &mut reached, effort) {
+            let found = match self.step(
+                &mut scene,
+                lengths,
+                &mut reached,
+                attempt.recording(),
+                effort,
+            ) {
                 Ok(found) => found,
                 // Of a step that moves pins or bodies a part may be easier, and no other length.
                 Err(StepError::NotConverged { .. }) if lengths.span == 0.0 || !is_driven => {
@@ -340,6 +372,7 @@ impl Equilibrium {
         motion.set_contacts(scene.objective.get().and_then(ContactTerm::state));
         self.minimiser.remember(h, &mut motion.history);
         proposal.settled = Some(reached.settled);
+        proposal.search = reached.steps;
         proposal.account = StepAccount {
             residual: reached.residual,
             outcome: reached.outcome,

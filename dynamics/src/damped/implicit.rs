@@ -1,11 +1,13 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
 use crate::contact::ContactTerm;
+use crate::damped::formula::StepFormula;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
-use crate::damped::turning::{Predictions, Turning};
+use crate::damped::turning::Turning;
 use crate::report::effort::SolverEffort;
+use crate::step::accepted::{StepEvent, Taken};
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
@@ -102,6 +104,10 @@ impl Integrator for Implicit {
             .outcome(repeated.changes),
             _ => Outcome::default(),
         };
+        let is_eased = repeated.before.is_some() || !outcome.corrections.is_empty();
+        if let (Some(taken), true) = (&mut proposal.taken, is_eased) {
+            taken.events.push(StepEvent::Restitution);
+        }
         let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
         if let Some(before) = &mut history.previous {
@@ -155,41 +161,27 @@ fn minimised(
     effort: &mut SolverEffort<'_>,
 ) -> Result<(), StepError> {
     let (state, h) = (attempt.state, attempt.h);
-    // a = 1 + b: differences keep pinned vertices where they are to the last bit.
     let Reach {
         before: previous,
         b,
         k,
     } = reach;
-    let before = previous.unwrap_or(state);
     let formula = previous.map_or(Formula::OneStep, |_| Formula::TwoStep);
     let model = scene.model;
     minimiser
         .recall(model, &attempt, k * h)
         .map_err(|source| StepError::Linalg { t: state.t, source })?;
     // The minimiser lends its arrays to the problem.
-    let [mut rest, mut prediction, mut ahead] = std::mem::take(&mut minimiser.start);
-    // Of v_ the damping leaves by now what it does in the step before, and of both what it does in this one.
-    prediction.copy_from_slice(&before.v);
-    model.damp(&mut prediction, state.t - before.t);
-    for i in 0..state.x.len() {
-        let v = state.v[i];
-        prediction[i] = v + b * (v - prediction[i]);
-    }
-    model.damp(&mut prediction, h);
-    for i in 0..state.x.len() {
-        let x = state.x[i];
-        rest[i] = x + b * (x - before.x[i]);
-        prediction[i] = rest[i] + k * h * prediction[i];
-        ahead[i] = x + h * state.v[i];
-    }
-    model.place_pins(state.t + h, &mut ahead);
-    let mut predictions = Predictions {
-        rest: &mut rest,
-        inertial: &mut prediction,
+    let mut places = std::mem::take(&mut minimiser.start);
+    let formula_of_step = StepFormula {
+        start: state,
+        before: previous,
+        span: h,
+        back: b,
+        k,
     };
-    let spans = [state.t - before.t, h];
-    let turned = turning.correct(state, spans, [b, k], &mut predictions);
+    let turned = formula_of_step.place(model, turning, &mut places);
+    let [rest, prediction, ahead] = places;
     let start = StepStart {
         state,
         memories: attempt.memories,
@@ -215,6 +207,7 @@ fn minimised(
     let (minimum, exchange) = outcome?;
     let motion = &mut proposal.motion;
     for i in 0..state.x.len() {
+        let before = previous.unwrap_or(state);
         let dx = minimiser.x()[i] - state.x[i];
         motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
@@ -226,6 +219,17 @@ fn minimised(
     motion.balance.copy_from(minimiser.balance());
     motion.set_contacts(scene.objective.get().and_then(ContactTerm::state));
     minimiser.remember(k * h, &mut motion.history);
+    proposal.taken = attempt.is_recorded().then(|| {
+        let contact: Option<&ContactTerm> = scene.objective.get();
+        Box::new(Taken {
+            before: previous.cloned(),
+            span: h,
+            h: k * h,
+            back: b,
+            lags: contact.map_or_else(Vec::new, ContactTerm::lags),
+            events: Vec::new(),
+        })
+    });
     proposal.account = StepAccount {
         residual: minimum.residual,
         outcome: minimum.outcome,

@@ -24,6 +24,7 @@ use isosheet_model::TraceEvent;
 use isosheet_model::term::Exchange;
 pub(crate) use lagrangian::Stability;
 use lagrangian::{Merit, OPERATIONS};
+use nalgebra::Vector3;
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
 use problem::StepProblem;
@@ -154,6 +155,13 @@ impl Minimiser {
     pub(crate) fn forget(&mut self) {
         self.work.remembered.fill(0.0);
         self.work.lagrangian.clear_multipliers();
+    }
+
+    /// The multipliers of rods and of vertex constraints at the result.
+    pub(crate) fn multipliers(&self) -> (Vec<f64>, Vec<Vector3<f64>>) {
+        let lagrangian = &self.work.lagrangian;
+        let constraints = lagrangian.vertex_rows.multipliers.clone();
+        (lagrangian.multipliers.clone(), constraints)
     }
 
     /// Leaves what the step that was just minimised gives to the next; `h` is the effective step.

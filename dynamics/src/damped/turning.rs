@@ -16,6 +16,7 @@
 //! as before. Both are of second order in `h`, as is the part of the force of the rods that they stand for.
 
 use crate::damped::restitution::mass_matrix;
+use crate::step::accepted::{OfPlaces, OfState};
 use crate::{SheetModel, State};
 use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
@@ -26,9 +27,13 @@ const PART: f64 = 0.01;
 /// Most parts: a step of more turns is no step of a rotation.
 const MOST_PARTS: f64 = 1024.0;
 
+/// Part of the size of a body, and of its speeds, over which derivatives are central differences: the root of
+/// the third order of round-off leaves 1e-10.
+const DIFFERENCE: f64 = 1e-5;
+
 /// The bodies that no guide holds.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Turning {
+pub(crate) struct Turning {
     bodies: Vec<Turned>,
 }
 
@@ -42,13 +47,13 @@ struct Turned {
 
 /// The predictions of a step, `3V`: where the vertices would be without the force of the formula, and where
 /// with inertia alone, metres.
-pub(super) struct Predictions<'a> {
-    pub(super) rest: &'a mut [f64],
-    pub(super) inertial: &'a mut [f64],
+pub(crate) struct Predictions<'a> {
+    pub(crate) rest: &'a mut [f64],
+    pub(crate) inertial: &'a mut [f64],
 }
 
 impl Turning {
-    pub(super) fn new(model: &SheetModel) -> Self {
+    pub(crate) fn new(model: &SheetModel) -> Self {
         let [start, end] = model.sheets_end();
         let is_held = |first: usize| {
             let mut vertices = first..first + 4;
@@ -68,7 +73,7 @@ impl Turning {
 
     /// Corrects the predictions of a step of `h` seconds with the coefficients `b` and `k` by what they miss
     /// of rotations; the step before took `before` seconds. Returns the changes of `rest`, by coordinates.
-    pub(super) fn correct(
+    pub(crate) fn correct(
         &self,
         state: &State,
         [before, h]: [f64; 2],
@@ -99,6 +104,65 @@ impl Turning {
             }
         }
         changes
+    }
+
+    /// Hands the derivatives of a number by `rest` and by the inertial prediction on to the state, as far as
+    /// they depend on it by [`Turning::correct`]: central differences of its twenty-four numbers for each
+    /// body.
+    pub(crate) fn pull_back(
+        &self,
+        state: &State,
+        spans: [f64; 2],
+        formula: [f64; 2],
+        of: &OfPlaces,
+        of_state: &mut OfState,
+    ) {
+        if self.bodies.is_empty() {
+            return;
+        }
+        let n = state.x.len();
+        let mut moved = state.clone();
+        let [mut rest, mut inertial] = [vec![0.0; n], vec![0.0; n]];
+        for body in &self.bodies {
+            let own = 3 * body.first..3 * body.first + 12;
+            let alone = Self {
+                bodies: vec![body.clone()],
+            };
+            let mut value = |state: &State| -> f64 {
+                rest[own.clone()].fill(0.0);
+                inertial[own.clone()].fill(0.0);
+                let mut predictions = Predictions {
+                    rest: &mut rest,
+                    inertial: &mut inertial,
+                };
+                alone.correct(state, spans, formula, &mut predictions);
+                let parts = own.clone();
+                parts
+                    .map(|i| of.rest[i] * rest[i] + of.prediction[i] * inertial[i])
+                    .sum()
+            };
+            let size = |values: &[f64]| {
+                let first = &values[own.start..own.start + 3];
+                let rows = values[own.clone()].as_chunks::<3>().0.iter();
+                let parts = rows.flat_map(|row| row.iter().zip(first).map(|(a, b)| (a - b).abs()));
+                parts.fold(0.0, f64::max)
+            };
+            let step_x = DIFFERENCE * size(&state.x);
+            let step_v = DIFFERENCE * size(&state.v).max(size(&state.x) / spans[1]);
+            for i in own.clone() {
+                let mut slope = |values: fn(&mut State) -> &mut Vec<f64>, step: f64| {
+                    let at = values(&mut moved)[i];
+                    values(&mut moved)[i] = at + step;
+                    let up = value(&moved);
+                    values(&mut moved)[i] = at - step;
+                    let down = value(&moved);
+                    values(&mut moved)[i] = at;
+                    (up - down) / (2.0 * step)
+                };
+                of_state.x[i] += slope(|state| &mut state.x, step_x);
+                of_state.v[i] += slope(|state| &mut state.v, step_v);
+            }
+        }
     }
 }
 

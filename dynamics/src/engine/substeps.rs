@@ -16,6 +16,7 @@ use crate::objective::Objective;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::step_report::StepOutcome;
 use crate::report::totals::StepTotals;
+use crate::step::accepted::{AcceptedStep, Recording, StepEvent, StepKind, Taken};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
@@ -70,7 +71,12 @@ pub(crate) struct Engine {
     /// Where the sheet is. Nothing but [`Substeps::commit`] changes it in a step.
     motion: Motion,
     proposal: Proposal,
+    /// Receives accepted sub-steps.
+    recorder: Option<Box<StepSink>>,
 }
+
+/// Receives accepted sub-steps.
+pub(crate) type StepSink = dyn FnMut(AcceptedStep) + Send;
 
 impl Engine {
     /// Vertices that rods to pins at rest hold in place become pins.
@@ -114,6 +120,7 @@ impl Engine {
         Ok(Self {
             motion: Motion::at(state, &model, traits.balance(&model)),
             proposal: Proposal::new(&model, traits),
+            recorder: None,
             fallback: fallback(&model, &control, &tuning)?,
             integrator,
             control,
@@ -250,6 +257,16 @@ impl Engine {
         self.fallback = fallback(&self.model, &control, &self.tuning)?;
         self.control = control;
         Ok(())
+    }
+
+    /// Hands accepted sub-steps to a sink from now on.
+    pub(crate) fn set_recorder(&mut self, sink: Box<StepSink>) {
+        self.recorder = Some(sink);
+    }
+
+    /// Model and objective.
+    pub(crate) fn parts(&mut self) -> (&Arc<SheetModel>, &mut Objective) {
+        (&self.model, &mut self.objective)
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
@@ -525,6 +542,7 @@ impl Substeps<'_, '_> {
             motion,
             proposal,
             control,
+            recorder,
             ..
         } = &mut *self.engine;
         let t = motion.state.t + h;
@@ -536,7 +554,13 @@ impl Substeps<'_, '_> {
             model,
             objective: &mut *objective,
         };
-        let attempt = Attempt::new(motion, h, self.memory).with(phases);
+        let recording = match recorder {
+            Some(_) => Recording::On,
+            None => Recording::Off,
+        };
+        let attempt = Attempt::new(motion, h, self.memory)
+            .with(phases)
+            .recorded(recording);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
         effort.t = motion.state.t;
@@ -787,7 +811,14 @@ impl Substeps<'_, '_> {
         });
         totals.plastic += settled.dissipated;
         totals.work += settled.work;
-        if self.proposer == Proposer::Fallback {
+        let is_fallback = self.proposer == Proposer::Fallback;
+        if let Some(recorder) = &mut engine.recorder {
+            let taken = engine.proposal.taken.take();
+            let taken = taken.map(|taken| accepted(*taken, before, motion, is_fallback));
+            let search = std::mem::take(&mut engine.proposal.search);
+            search.into_iter().chain(taken).for_each(recorder);
+        }
+        if is_fallback {
             // What the fallback remembers means nothing to the method that was asked for.
             motion.history.previous = None;
             motion.history.multipliers.clear();
@@ -801,6 +832,27 @@ impl Substeps<'_, '_> {
         });
         totals.effort.begin(self.limit);
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
+    }
+}
+
+/// An accepted sub-step between two points of a motion.
+fn accepted(taken: Taken, before: &Motion, after: &Motion, is_fallback: bool) -> AcceptedStep {
+    let mut events = taken.events;
+    events.extend(is_fallback.then_some(StepEvent::Fallback));
+    AcceptedStep {
+        kind: StepKind::Motion,
+        start: before.state.clone(),
+        before: taken.before,
+        end: after.state.clone(),
+        span: taken.span,
+        sliding_time: taken.span,
+        h: taken.h,
+        back: taken.back,
+        memories: before.memories.clone(),
+        rods: after.history.multipliers.rods.clone(),
+        constraints: after.history.multipliers.constraints.clone(),
+        lags: taken.lags,
+        events,
     }
 }
 

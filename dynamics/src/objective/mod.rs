@@ -5,13 +5,14 @@ mod inertia;
 #[cfg(test)]
 mod spring_tests;
 
+use crate::contact::ContactTerm;
 use crate::linear::primal::PrimalMatrix;
 use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
 use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::both;
-use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::hessian::{BlockSink, HessianProduct};
 use isosheet_materials::potential::At;
 use isosheet_model::PINNED;
 use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
@@ -179,6 +180,26 @@ impl Objective {
             size: inertia + h * h * sum.size,
             round_off: h * h * sum.round_off,
         }
+    }
+
+    /// All terms but the inertia and contact.
+    pub(crate) fn without_contact(&mut self) -> impl Iterator<Item = &mut dyn Term> {
+        self.terms().filter(|term| !is::<ContactTerm>(&**term))
+    }
+
+    /// The terms that are neither inertia, potentials and explicit forces, nor contact.
+    pub(crate) fn others_without_contact(&mut self) -> impl Iterator<Item = &mut dyn Term> {
+        self.without_contact().skip(1)
+    }
+
+    /// Whether there are such terms.
+    pub(crate) fn has_others(&mut self) -> bool {
+        self.others_without_contact().next().is_some()
+    }
+
+    /// Adds the Hessian of the inertia.
+    pub(crate) fn add_inertia_hessian(&mut self, at: Iterate<'_>, sink: &mut dyn BlockSink) {
+        self.inertia.add_hessian(at, HessianPart::Full, sink);
     }
 
     /// Sets the gradient of the incremental potential.

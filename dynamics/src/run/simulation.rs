@@ -12,6 +12,8 @@ use crate::report::simulation_error::SimulationError;
 use crate::report::step_report::StepReport;
 use crate::report::totals::StepTotals;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
+use crate::sensitivity::StepEquations;
+use crate::step::accepted::AcceptedStep;
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_materials::potential::At;
@@ -265,16 +267,44 @@ impl Simulation {
         self.trace = Some(Box::new(sink));
     }
 
+    /// Sets a sink for the accepted sub-steps to come of BDF2, implicit Euler and equilibria; results do not
+    /// depend on it. Other methods hand out none.
+    pub fn set_recorder(&mut self, sink: impl FnMut(AcceptedStep) + Send + 'static) {
+        if let Moved::ByMethod(engine) = &mut self.engine {
+            engine.set_recorder(Box::new(sink));
+        }
+    }
+
+    /// The equations of its steps, which it evaluates wherever it is asked to; the state stays as it is.
+    /// Nothing in charts.
+    pub fn step_equations(&mut self) -> Option<StepEquations<'_>> {
+        match &mut self.engine {
+            Moved::ByMethod(engine) => {
+                let (model, objective) = engine.parts();
+                Some(StepEquations::new(model, objective))
+            }
+            Moved::ByEngine(_) => None,
+        }
+    }
+
     /// Adds contact: a barrier potential that keeps every gap positive.
     ///
     /// # Errors
     /// [`SimulationError::Contact`] if the method does not support contact or the state is in contact.
-    pub fn with_contact(
+    pub fn with_contact(self, contact: impl Contact + 'static) -> Result<Self, SimulationError> {
+        self.with_boxed_contact(Box::new(contact))
+    }
+
+    /// As [`Simulation::with_contact`], of a contact whose type is not known.
+    ///
+    /// # Errors
+    /// As [`Simulation::with_contact`].
+    pub fn with_boxed_contact(
         mut self,
-        contact: impl Contact + 'static,
+        contact: Box<dyn Contact>,
     ) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Moved::ByMethod(engine) => engine.set_contact(Box::new(contact))?,
+            Moved::ByMethod(engine) => engine.set_contact(contact)?,
             Moved::ByEngine(_) => return Err(ContactError::Method.into()),
         }
         self.energy.start = self.energy();

@@ -4,6 +4,7 @@ use crate::contact::ContactState;
 use crate::objective::Objective;
 use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
+use crate::step::accepted::{AcceptedStep, Recording, Taken};
 use crate::step::history::{BodyChange, History, Multipliers};
 use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
@@ -30,6 +31,10 @@ pub(crate) struct Proposal {
     /// What it did to what potentials remember, which is in the motion then; nothing where that is left to
     /// the commit.
     pub(crate) settled: Option<Settled>,
+    /// What it was solved from, where accepted sub-steps are handed out.
+    pub(crate) taken: Option<Box<Taken>>,
+    /// The steps of a search, where they are handed out.
+    pub(crate) search: Vec<AcceptedStep>,
 }
 
 /// What a proposed sub-step achieves.
@@ -57,6 +62,8 @@ impl Proposal {
             motion: Motion::at(nowhere, model, traits.balance(model)),
             account: StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton),
             settled: None,
+            taken: None,
+            search: Vec::new(),
         }
     }
 }
@@ -93,6 +100,7 @@ pub(crate) struct Attempt<'a> {
     pub(crate) contacts: Option<&'a ContactState>,
     history: &'a History,
     memory: Memory,
+    recording: Recording,
 }
 
 /// The phases of a minimisation that a sub-step of rods among bodies and supports at rest may try.
@@ -135,7 +143,23 @@ impl<'a> Attempt<'a> {
             contacts: start.contacts.as_ref(),
             history: &start.history,
             memory,
+            recording: Recording::Off,
         }
+    }
+
+    /// As part of a run whose accepted sub-steps are handed out.
+    pub(crate) fn recorded(self, recording: Recording) -> Self {
+        Self { recording, ..self }
+    }
+
+    /// Whether the run is one of those.
+    pub(crate) fn recording(&self) -> Recording {
+        self.recording
+    }
+
+    /// Whether it says what it was solved from.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.recording == Recording::On
     }
 
     /// From another state.

@@ -1,5 +1,7 @@
 //! How much shorter the chords of a bent sheet are than its arcs.
 
+mod derivatives;
+
 use super::bend::{Bend, NUMBERS};
 use super::curved::CurvedFace;
 use super::face::Face;
@@ -84,6 +86,19 @@ impl Arcs {
     /// Each has the slack of the bend of that face around it which bends most, as far as the tension around
     /// it leaves it.
     pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
+        let slack = |face: &Face, bend, wanted| face.with_slack(here, bend, wanted);
+        self.remember_by(faces, here, memory, slack);
+    }
+
+    /// As [`Arcs::remember`]; `slack` gives each face its slack, by its bend and the squared bend that it is
+    /// wanted for.
+    pub(super) fn remember_by(
+        &self,
+        faces: &[Face],
+        here: At<'_>,
+        memory: &mut [f64],
+        mut slack: impl FnMut(&Face, Bend, f64) -> Bend,
+    ) {
         let own = &faces[self.faces.clone()];
         let rows = self.rows(memory);
         self.stresses.with(|stresses| {
@@ -111,7 +126,7 @@ impl Arcs {
                     |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
                 let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
                 let bend = Bend::remembered(&rows[k]);
-                rows[k] = own[k].with_slack(here, bend, wanted).numbers();
+                rows[k] = slack(&own[k], bend, wanted).numbers();
             }
         });
     }

@@ -1,5 +1,7 @@
 //! One face of an elastic sheet.
 
+mod derivatives;
+
 use super::bend::Bend;
 use super::law::{self, Law, Pull};
 use super::limit::StrainLimit;

@@ -90,6 +90,35 @@ pub(super) fn largest_of_mean(
     0.5 * (trace + deviator.norm()) / area
 }
 
+/// Hands the derivatives of [`largest_of_mean`] by the tensor of each face to `take`.
+pub(super) fn pull_largest_of_mean(
+    around: &[Neighbour],
+    of: impl Fn(usize) -> (f64, Vector3<f64>),
+    mut take: impl FnMut(usize, Vector3<f64>),
+) {
+    let mut area = 0.0;
+    let mut deviator = Complex::new(0.0, 0.0);
+    for neighbour in around {
+        let (own, s) = of(neighbour.face);
+        area += own;
+        let difference = Complex::new(s[0] - s[2], std::f64::consts::SQRT_2 * s[1]);
+        deviator += neighbour.turn * difference * own;
+    }
+    let size = deviator.norm();
+    let along = match size > 0.0 {
+        true => deviator.conj() / size,
+        false => Complex::new(0.0, 0.0),
+    };
+    for neighbour in around {
+        let (own, _) = of(neighbour.face);
+        let turned = along * neighbour.turn;
+        let scale = 0.5 * own / area;
+        let shear = -std::f64::consts::SQRT_2 * turned.im;
+        let tensor = Vector3::new(1.0 + turned.re, shear, 1.0 - turned.re);
+        take(neighbour.face, scale * tensor);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

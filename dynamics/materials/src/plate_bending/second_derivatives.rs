@@ -3,6 +3,8 @@
 use super::law::Roots;
 use super::stencil::{POINTS, Stencils};
 use crate::potential::At;
+use crate::vectors::add;
+use isosheet_mesh::VertexId;
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
@@ -37,5 +39,19 @@ impl SecondDerivatives {
             let sum: Matrix3<f64> = of_face.map(|stencil| stencil.apply(at)).sum();
             sum * inverse
         })
+    }
+
+    /// Adds the derivatives of a number by positions (`3V`) with those by the second derivatives of each
+    /// face.
+    pub(crate) fn add_transposed(&self, of: &[Matrix3<f64>], of_x: &mut [f64]) {
+        let mut points = self.stencils.iter();
+        for (of, inverse) in of.iter().zip(&self.inverses) {
+            let of_sum = of * inverse.transpose();
+            for stencil in points.by_ref().take(POINTS) {
+                for (v, weights) in stencil {
+                    add(of_x, VertexId::from_index(v), &(of_sum * weights));
+                }
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@ use crate::StepError;
 use crate::sheet_model::SheetModel;
 use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
 use isosheet_materials::HessianSink;
+use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::{At, Force, Potential, Reached, Remembering, Settled};
 use isosheet_materials::vectors::{add, point};
@@ -210,6 +211,27 @@ impl Remembering for JointSpring {
 
     fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
         memory[0] = self.coordinate.value(state.x, memory[0]);
+    }
+
+    /// What is remembered counts turns, and no derivative depends on it.
+    fn add_memory_products(
+        &self,
+        _at: At<'_>,
+        _w: &[f64],
+        _of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Ok(())
+    }
+
+    fn pull_back_settling(
+        &self,
+        _state: Reached<'_>,
+        _found: (&[f64], &[f64]),
+        of_memory: &mut [f64],
+        _of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        of_memory.fill(0.0);
+        Ok(())
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {

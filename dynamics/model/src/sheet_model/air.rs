@@ -5,8 +5,9 @@ mod step_tests;
 #[cfg(test)]
 mod tests;
 
-use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, StartProducts, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
+use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::Force;
 use isosheet_materials::vectors::{add, point};
@@ -16,6 +17,9 @@ use isosheet_motion::{Profile, ProfileError};
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 use std::sync::Arc;
+
+/// Part of the size of a face over which derivatives by the places of its corners are central differences.
+const DIFFERENCE: f64 = 1e-5;
 
 /// Why there cannot be such air.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -433,6 +437,47 @@ impl Term for AirStep {
                 sink.add_edge(e, &block);
             }
         }
+    }
+
+    /// By `y` through the velocities, which the Hessian has with the other sign, and by the places that the
+    /// velocities at the start lead to through normals and wind, of each face by central differences.
+    fn add_start_products(
+        &mut self,
+        step: &StepStart<'_>,
+        at: Iterate<'_>,
+        w: &[f64],
+        scale: f64,
+        out: &mut StartProducts,
+    ) -> Result<(), NoDerivative> {
+        let scale = -scale / 3.0;
+        let (t, on_faces) = (step.t(), &self.drag.0);
+        for (f, u) in self.relative(at.x) {
+            let vertices = f.face.vertices;
+            let weight: Vector3<f64> = vertices.iter().map(|v| point(w, *v)).sum();
+            let moved = f.wind - u;
+            // The velocity of the air relative to the face grows with `y / h`.
+            let by_rest = scale / (3.0 * self.h) * (f.drag.derivative(&u) * weight);
+            let corners = vertices.map(|v| point(step.ahead, v));
+            let size = (corners[1] - corners[0]).norm();
+            let mut places = step.ahead.to_vec();
+            for vertex in vertices {
+                add(&mut out.rest, vertex, &by_rest);
+                for axis in 0..3 {
+                    let i = 3 * vertex.index() + axis;
+                    let mut at = |distance: f64| {
+                        places[i] = step.ahead[i] + distance;
+                        let wind = on_faces.wind_at(&f.face, t, &places);
+                        let force = f.face.drag(&places).force(&(wind - moved));
+                        places[i] = step.ahead[i];
+                        force.dot(&weight)
+                    };
+                    let distance = DIFFERENCE * size;
+                    let slope = (at(distance) - at(-distance)) / (2.0 * distance);
+                    out.ahead[i] += scale * slope;
+                }
+            }
+        }
+        Ok(())
     }
 
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {

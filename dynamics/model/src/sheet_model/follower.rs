@@ -5,7 +5,8 @@ pub(super) mod tests;
 
 use super::loaded_faces::Corners;
 use crate::StepError;
-use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, StartProducts, StepStart, Term, Value};
+use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::Force;
 use isosheet_materials::vectors::{add, point};
@@ -242,6 +243,30 @@ impl<L: FaceLoad> Term for FollowerStep<L> {
         }
         self.lag(at.t, at.x);
         true
+    }
+
+    /// By the positions at the end, through the part of the derivative that has no energy: loads that have
+    /// settled are those of the iterate.
+    fn add_start_products(
+        &mut self,
+        _step: &StepStart<'_>,
+        at: Iterate<'_>,
+        w: &[f64],
+        scale: f64,
+        out: &mut StartProducts,
+    ) -> Result<(), NoDerivative> {
+        let load = &*self.load.0;
+        for (number, lagged) in self.lagged.iter().enumerate() {
+            let derivatives = load.derivatives(number, at.t, &places(&lagged.face, at.x));
+            let weights = joined(&places(&lagged.face, w));
+            let whole: SMatrix<f64, 9, 9> =
+                SMatrix::from_fn(|i, j| derivatives[i / 3][j / 3][(i % 3, j % 3)]);
+            let products = -scale * (whole - lagged.stiffness).tr_mul(&weights);
+            for (k, v) in lagged.face.vertices.iter().enumerate() {
+                add(&mut out.end, *v, &of_corner(&products, k));
+            }
+        }
+        Ok(())
     }
 
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {

@@ -1,5 +1,6 @@
 //! Prescribed forces: loads on vertices and fields of acceleration whose size follows a profile.
 
+use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Force;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Topology, VertexId};
@@ -140,6 +141,19 @@ impl Force for VertexLoad {
             }
         }
     }
+
+    /// It depends on time alone.
+    fn add_state_products(
+        &self,
+        _t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        _w: &[f64],
+        _of_x: &mut [f64],
+        _of_v: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Ok(())
+    }
 }
 
 /// A uniform field of acceleration, `f_i = w_i a(t) d`: its size `a` (metres per second squared) follows a
@@ -181,6 +195,19 @@ impl Force for AccelerationField {
                 row[k] += w * acceleration[k];
             }
         }
+    }
+
+    /// It depends on time alone.
+    fn add_state_products(
+        &self,
+        _t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        _w: &[f64],
+        _of_x: &mut [f64],
+        _of_v: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Ok(())
     }
 }
 

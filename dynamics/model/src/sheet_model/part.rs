@@ -1,11 +1,11 @@
 //! Potentials of one of several sheets.
 
-use isosheet_materials::LimitError;
 use isosheet_materials::hessian::HessianSink;
 use isosheet_materials::potential::{
-    At, CouplingKind, Limited, MaterialReport, Potential, PotentialShape, Reached, Remembering,
-    Settled,
+    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, PotentialShape, Reached,
+    Remembering, Settled,
 };
+use isosheet_materials::{LimitError, NoDerivative};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -80,6 +80,10 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         let hessian = &mut Shifted { part, hessian };
         self.potential
             .add_semidefinite_hessian(self.own(at), hessian);
+    }
+
+    fn hessian_kind(&self) -> HessianKind {
+        self.potential.hessian_kind()
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {
@@ -167,6 +171,49 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
         self.remembers().settle(self.reached(state), memory)
+    }
+
+    fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
+        self.remembers().choices(self.reached(state), memory)
+    }
+
+    fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
+        self.remembers()
+            .settle_by(choices, self.reached(state), memory);
+    }
+
+    fn add_memory_products(
+        &self,
+        at: At<'_>,
+        w: &[f64],
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let w = &w[self.part.coordinates()];
+        self.remembers()
+            .add_memory_products(self.own(at), w, of_memory)
+    }
+
+    fn pull_back_settling(
+        &self,
+        state: Reached<'_>,
+        found: (&[f64], &[f64]),
+        of_memory: &mut [f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let of_x = &mut of_x[self.part.coordinates()];
+        self.remembers()
+            .pull_back_settling(self.reached(state), found, of_memory, of_x)
+    }
+
+    fn pull_back_start(
+        &self,
+        state: Reached<'_>,
+        of_memory: &[f64],
+        of_x: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let of_x = &mut of_x[self.part.coordinates()];
+        self.remembers()
+            .pull_back_start(self.reached(state), of_memory, of_x)
     }
 
     fn can_yield(&self) -> bool {

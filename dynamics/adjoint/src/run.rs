@@ -1,0 +1,243 @@
+//! Runs that remember their accepted steps.
+
+use crate::error::AdjointError;
+use crate::family::{Family, Plan, Scene};
+use crate::gradient::Gradient;
+use crate::loss::Loss;
+use crate::options::{AdjointOptions, Kept};
+use crate::sweep::Sweep;
+use isosheet_dynamics::sensitivity::AcceptedStep;
+use isosheet_dynamics::{Checkpoint, Simulation};
+use isosheet_model::State;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The accepted sub-steps of each step of a part of a plan.
+type Steps = Vec<Vec<AcceptedStep>>;
+
+/// A run of a scene with some numbers, recorded so that losses of it can be differentiated.
+pub struct Run<'f> {
+    family: &'f dyn Family,
+    numbers: Vec<f64>,
+    plan: Plan,
+    options: AdjointOptions,
+    states: Vec<State>,
+    parts: Vec<Part>,
+}
+
+/// A part of a plan.
+struct Part {
+    /// Its first step.
+    first: usize,
+    /// How many steps it has.
+    count: usize,
+    content: Content,
+}
+
+/// What is kept of a part.
+enum Content {
+    Steps(Steps),
+    /// The checkpoint at its start.
+    Checkpoint(Box<Checkpoint>),
+}
+
+impl<'f> Run<'f> {
+    /// Runs a scene.
+    ///
+    /// # Errors
+    /// [`AdjointError`] if the scene cannot be built, or a step fails.
+    pub fn record(
+        family: &'f dyn Family,
+        numbers: &[f64],
+        plan: Plan,
+        options: AdjointOptions,
+    ) -> Result<Self, AdjointError> {
+        let mut simulation = simulation(family, numbers, &plan, None)?;
+        let count = plan.steps.len();
+        let mut states = vec![simulation.state().clone()];
+        let mut parts = Vec::new();
+        let each = match options.kept {
+            Kept::All => count.max(1),
+            Kept::Between { checkpoints } => checkpoints.max(1),
+        };
+        let mut first = 0;
+        while first < count {
+            let own = each.min(count - first);
+            let checkpoint = match options.kept {
+                Kept::All => None,
+                Kept::Between { .. } => Some(simulation.checkpoint()),
+            };
+            let content = match checkpoint {
+                None => Content::Steps(take(&mut simulation, &plan, first, own, |state| {
+                    states.push(state.clone());
+                })?),
+                Some(checkpoint) => {
+                    for number in first..first + own {
+                        let step = simulation.step(plan.steps[number]);
+                        step.map_err(|source| AdjointError::Step { number, source })?;
+                        states.push(simulation.state().clone());
+                    }
+                    Content::Checkpoint(Box::new(checkpoint))
+                }
+            };
+            parts.push(Part {
+                first,
+                count: own,
+                content,
+            });
+            first += own;
+        }
+        Ok(Self {
+            family,
+            numbers: numbers.to_vec(),
+            plan,
+            options,
+            states,
+            parts,
+        })
+    }
+
+    /// The states at the start and after each step of the plan.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
+    /// The value of a loss, without its gradient.
+    pub fn value(&self, loss: &dyn Loss) -> f64 {
+        let shares = self.states.iter().enumerate();
+        let shares = shares.filter_map(|(n, state)| Some(loss.share(n, state)?.value));
+        shares.sum()
+    }
+
+    /// The gradient of a loss by the numbers of the scene and by the state at its start.
+    ///
+    /// # Errors
+    /// [`AdjointError`] naming what has no derivative, with the time.
+    pub fn gradient(&self, loss: &dyn Loss) -> Result<Gradient, AdjointError> {
+        let base = simulation(self.family, &self.numbers, &self.plan, None)?;
+        let mut sweep = Sweep::new(base, &self.options);
+        for number in 0..self.numbers.len() {
+            sweep.add_number(self.neighbours(number)?)?;
+        }
+        let mut value = 0.0;
+        for part in self.parts.iter().rev() {
+            let made_again;
+            let steps = match &part.content {
+                Content::Steps(steps) => steps,
+                Content::Checkpoint(checkpoint) => {
+                    made_again = self.take_again(part, checkpoint)?;
+                    &made_again
+                }
+            };
+            for (k, sub_steps) in steps.iter().enumerate().rev() {
+                let n = part.first + k + 1;
+                value += sweep.add_share(loss, n, &self.states[n])?;
+                for step in sub_steps.iter().rev() {
+                    sweep.step_back(step)?;
+                }
+            }
+        }
+        value += sweep.add_share(loss, 0, &self.states[0])?;
+        sweep.finish(&self.states[0], value)
+    }
+
+    /// The simulations with a number that is larger and smaller, and the distance of these.
+    fn neighbours(&self, number: usize) -> Result<Neighbours, AdjointError> {
+        let value = self.numbers[number];
+        let step = self.options.difference * self.options.size(number, value);
+        let ends = [value + step, value - step];
+        let distance = ends[0] - ends[1];
+        if !(distance.is_finite() && distance > 0.0) {
+            return Err(AdjointError::Number { number, value });
+        }
+        let mut numbers = self.numbers.clone();
+        let mut at = |value: f64| {
+            numbers[number] = value;
+            simulation(self.family, &numbers, &self.plan, Some(number))
+        };
+        Ok(Neighbours {
+            number,
+            simulations: [at(ends[0])?, at(ends[1])?],
+            distance,
+        })
+    }
+
+    /// Makes a part of the run again.
+    fn take_again(&self, part: &Part, checkpoint: &Checkpoint) -> Result<Steps, AdjointError> {
+        let Scene { model, contact, .. } = scene(self.family, &self.numbers, None)?;
+        let mut simulation = Simulation::resume(model, contact, checkpoint.clone())?;
+        let steps = take(&mut simulation, &self.plan, part.first, part.count, |_| {})?;
+        match simulation.state() == &self.states[part.first + part.count] {
+            true => Ok(steps),
+            false => Err(AdjointError::NotRepeated { number: part.first }),
+        }
+    }
+}
+
+/// The simulations with another value of a number.
+pub(crate) struct Neighbours {
+    pub(crate) number: usize,
+    /// With a larger and with a smaller value.
+    pub(crate) simulations: [Simulation; 2],
+    /// Between the two values.
+    pub(crate) distance: f64,
+}
+
+fn scene(
+    family: &dyn Family,
+    numbers: &[f64],
+    number: Option<usize>,
+) -> Result<Scene, AdjointError> {
+    let scene = family.scene(numbers);
+    scene.map_err(|source| AdjointError::Scene { number, source })
+}
+
+fn simulation(
+    family: &dyn Family,
+    numbers: &[f64],
+    plan: &Plan,
+    number: Option<usize>,
+) -> Result<Simulation, AdjointError> {
+    let Scene {
+        model,
+        start,
+        contact,
+    } = scene(family, numbers, number)?;
+    let simulation = Simulation::new(model, start, plan.method.clone())?;
+    let simulation = simulation.with_control(plan.control.clone())?;
+    Ok(match contact {
+        Some(contact) => simulation.with_boxed_contact(contact)?,
+        None => simulation,
+    })
+}
+
+/// Takes some steps of a plan, and hands each state to `see`.
+fn take(
+    simulation: &mut Simulation,
+    plan: &Plan,
+    first: usize,
+    count: usize,
+    mut see: impl FnMut(&State),
+) -> Result<Steps, AdjointError> {
+    let taken: Arc<Mutex<Vec<AcceptedStep>>> = Arc::default();
+    let sink = Arc::clone(&taken);
+    let list = |taken: &Mutex<Vec<AcceptedStep>>| {
+        std::mem::take(&mut *taken.lock().unwrap_or_else(PoisonError::into_inner))
+    };
+    simulation.set_recorder(move |step| {
+        sink.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(step);
+    });
+    let mut steps = Vec::with_capacity(count);
+    for number in first..first + count {
+        let step = simulation.step(plan.steps[number]);
+        step.map_err(|source| AdjointError::Step { number, source })?;
+        let own = list(&taken);
+        if own.is_empty() {
+            return Err(AdjointError::Method { number });
+        }
+        steps.push(own);
+        see(simulation.state());
+    }
+    Ok(steps)
+}

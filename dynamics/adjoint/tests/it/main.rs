@@ -1,0 +1,5 @@
+//! Gradients beside central differences, closed forms and searches.
+
+mod contact;
+mod differences;
+mod support;

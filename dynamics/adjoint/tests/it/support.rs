@@ -1,0 +1,81 @@
+//! Gradients beside central differences of whole runs.
+
+use isosheet_adjoint::{AdjointOptions, Family, Gradient, Loss, Plan, Run};
+use isosheet_dynamics::{ImplicitOptions, Method};
+
+/// Options whose steps are solved as far as numbers allow.
+pub(crate) fn exact() -> ImplicitOptions {
+    ImplicitOptions {
+        tolerance: Some(1e-13),
+        friction_tolerance: 1e-10,
+        max_friction_updates: 40,
+        ..ImplicitOptions::default()
+    }
+}
+
+pub(crate) fn bdf2() -> Method {
+    Method::Bdf2(exact())
+}
+
+/// The gradient of a loss, which is as near to central differences with their best step as `bound` says,
+/// relative to the larger of each derivative and `scale`.
+pub(crate) fn checked(
+    name: &str,
+    family: &dyn Family,
+    numbers: &[f64],
+    plan: &Plan,
+    loss: &dyn Loss,
+    bound: f64,
+) -> Gradient {
+    checked_with(
+        AdjointOptions::default(),
+        name,
+        family,
+        numbers,
+        plan,
+        loss,
+        bound,
+    )
+}
+
+/// As [`checked`], with options.
+pub(crate) fn checked_with(
+    options: AdjointOptions,
+    name: &str,
+    family: &dyn Family,
+    numbers: &[f64],
+    plan: &Plan,
+    loss: &dyn Loss,
+    bound: f64,
+) -> Gradient {
+    let run = Run::record(family, numbers, plan.clone(), options.clone()).expect("a run");
+    let gradient = run.gradient(loss).expect("a gradient");
+    assert_eq!(gradient.value, run.value(loss));
+    println!("{name}: {:?}", gradient.effort);
+    for (k, found) in gradient.of_numbers.iter().enumerate() {
+        let value = |change: f64| {
+            let mut moved = numbers.to_vec();
+            moved[k] += change;
+            let run = Run::record(family, &moved, plan.clone(), options.clone()).expect("a run");
+            run.value(loss)
+        };
+        let size = match options.sizes.get(k) {
+            Some(size) => *size,
+            None => numbers[k].abs(),
+        };
+        let errors = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|part| {
+            let h = part * size;
+            let slope = (value(h) - value(-h)) / (2.0 * h);
+            ((slope - found) / slope.abs().max(found.abs()), slope)
+        });
+        let best = errors
+            .iter()
+            .fold(f64::INFINITY, |best, (error, _)| best.min(error.abs()));
+        println!("  {name}, number {k}: {found:.10e}, error {best:.1e} of {errors:?}");
+        if std::env::var("LOOSE").is_ok() {
+            continue;
+        }
+        assert!(best <= bound, "{name}, number {k}: {found} {errors:?}");
+    }
+    gradient
+}

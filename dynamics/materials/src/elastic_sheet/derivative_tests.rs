@@ -1,0 +1,112 @@
+//! How what an elastic sheet remembers depends on where it was, by differences.
+
+use super::bend::NUMBERS;
+use super::*;
+use isosheet_mesh::generate;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A sheet, three places of it that are bent and strained differently, and random numbers.
+fn scene(seed: u64) -> (ElasticSheet, [Vec<f64>; 3], impl FnMut() -> f64) {
+    let corners = [[0.0, 0.0], [0.2, 0.0], [0.2, 0.1], [0.0, 0.1]];
+    let sheet = generate::delaunay(&corners, 0.03, 3).expect("a rectangle");
+    let plate = PlateBending::new(&sheet, 5e-4).expect("a plate");
+    let elastic = ElasticSheet::new(&sheet, 3e3, 0.3).expect("elastic");
+    let elastic = elastic.beside(&sheet, &plate);
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut random = move || rng.random_range(-1.0..1.0);
+    let mut place = |bend: f64, stretch: f64| -> Vec<f64> {
+        let points = sheet.positions().as_chunks::<3>().0.iter();
+        points
+            .flat_map(|[x, y, _]| {
+                let z = bend * (x * x - 0.4 * x * y) + 2e-5 * random();
+                [stretch * x + 2e-5 * random(), y + 2e-5 * random(), z]
+            })
+            .collect()
+    };
+    let places = [place(1.0, 0.999), place(2.5, 1.001), place(1.7, 1.004)];
+    let mut rng = ChaCha8Rng::seed_from_u64(seed + 1);
+    (elastic, places, move || rng.random_range(-1.0..1.0))
+}
+
+fn at<'a>(x: &'a [f64], v: &'a [f64]) -> Reached<'a> {
+    Reached { t: 0.0, x, v }
+}
+
+/// By positions and by what was remembered, at choices that are kept.
+#[test]
+fn what_is_remembered_has_its_derivatives() {
+    for seed in 0..4 {
+        let (elastic, [first, second, third], mut random) = scene(seed);
+        let v = vec![0.0; first.len()];
+        let mut found = elastic.memory();
+        elastic.settle(at(&first, &v), &mut found);
+        elastic.settle(at(&second, &v), &mut found);
+        let choices = elastic.choices(at(&third, &v), &found);
+        let closes = choices.iter().filter(|part| **part > 0.0 && **part < 1.0);
+        println!(
+            "seed {seed}: {} of {} are bounded",
+            closes.count(),
+            choices.len()
+        );
+        let settled = |x: &[f64], found: &[f64]| {
+            let mut memory = found.to_vec();
+            elastic.settle_by(&choices, at(x, &v), &mut memory);
+            memory
+        };
+        let mut plain = found.clone();
+        elastic.settle(at(&third, &v), &mut plain);
+        for (a, b) in plain.iter().zip(&settled(&third, &found)) {
+            assert!((a - b).abs() <= 1e-12 * a.abs() + 1e-18, "{a} {b}");
+        }
+        // Numbers of different units, one kind at a time.
+        for kind in 0..NUMBERS {
+            let mut of = vec![0.0; found.len()];
+            for row in of[1..].as_chunks_mut::<NUMBERS>().0 {
+                row[kind] = random();
+            }
+            let number =
+                |memory: &[f64]| -> f64 { of.iter().zip(memory).map(|(o, m)| o * m).sum() };
+            let (mut of_found, mut of_x) = (of.clone(), vec![0.0; third.len()]);
+            elastic
+                .pull_back_settling(at(&third, &v), (&found, &choices), &mut of_found, &mut of_x)
+                .expect("a derivative");
+            let difference = |by: &mut dyn FnMut(f64) -> f64, step: f64| {
+                (8.0 * (by(step) - by(-step)) - (by(2.0 * step) - by(-2.0 * step))) / (12.0 * step)
+            };
+            let direction: Vec<f64> = third.iter().map(|_| random()).collect();
+            let slope: f64 = direction.iter().zip(&of_x).map(|(d, o)| d * o).sum();
+            let mut along = |s: f64| {
+                let x: Vec<f64> = third
+                    .iter()
+                    .zip(&direction)
+                    .map(|(x, d)| x + s * d)
+                    .collect();
+                number(&settled(&x, &found))
+            };
+            let expected = difference(&mut along, 1e-9);
+            println!("  kind {kind} by x: {slope:e} {expected:e}");
+            for own in 0..NUMBERS {
+                let direction: Vec<f64> = found
+                    .iter()
+                    .enumerate()
+                    .map(|(i, m)| match i > 0 && (i - 1) % NUMBERS == own {
+                        true => m * random(),
+                        false => 0.0,
+                    })
+                    .collect();
+                let slope: f64 = direction.iter().zip(&of_found).map(|(d, o)| d * o).sum();
+                let mut along = |s: f64| {
+                    let moved: Vec<f64> = found
+                        .iter()
+                        .zip(&direction)
+                        .map(|(m, d)| m + s * d)
+                        .collect();
+                    number(&settled(&third, &moved))
+                };
+                let expected = difference(&mut along, 1e-5);
+                println!("  kind {kind} by kind {own}: {slope:e} {expected:e}");
+            }
+        }
+    }
+}
