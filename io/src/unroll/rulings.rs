@@ -14,8 +14,9 @@ use std::collections::BTreeSet;
 /// Of a face whose corners all lie on outlines and creases the ruling is the edge that folds most and is no
 /// crease: as between the quadrilaterals of a strip, the mesh is straight along such edges alone. Edges that
 /// go straight on are one line. Other faces have the direction of their fitted curvature. From the face with
-/// the largest curvature a line goes both ways up to an outline, a crease, or a face that is bent more along
-/// the line than across it; then from the face with the largest curvature that no line passes, and so on.
+/// the largest curvature a line goes both ways up to an outline, a crease, a face that does not bend or bends
+/// more along the line than across it, or a line that is there; then from the face with the largest curvature
+/// that no line passes, and so on. So no two lines cross.
 pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec<Stroke> {
     let flat = &unrolled.flat;
     let t = flat.topology();
@@ -43,14 +44,15 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
             bends[fold.edge.index()] = fold.size();
         }
     }
-    let mut edges: BTreeSet<EdgeId> = BTreeSet::new();
     let mut lines = Lines {
         flat,
         is_rim,
-        direction: vec![None; t.face_count()],
+        passage: vec![Passage::Flat; t.face_count()],
         is_passed: vec![false; t.face_count()],
+        drawn: Vec::new(),
     };
     let mut bent = Vec::new();
+    let mut edges = Vec::new();
     for (f, ruling) in t.face_ids().zip(fitted) {
         let face = t.faces()[f.index()];
         let is_inside = face.iter().any(|v| !is_at_rim[v.index()]);
@@ -59,36 +61,62 @@ pub(super) fn rulings(given: &Sheet, unrolled: &Unrolled, folds: &[Fold]) -> Vec
         let Some(most) = most.filter(|e| bends[e.index()] > 0.0) else {
             continue;
         };
-        let Some(ruling) = ruling.filter(|_| is_inside) else {
-            edges.insert(most);
+        lines.passage[f.index()] = Passage::Any;
+        if !is_inside {
+            edges.push((f, most));
+            continue;
+        }
+        let Some(ruling) = ruling else {
             continue;
         };
         let own = face.map(|v| given.position(unrolled.vertices[v.index()]));
-        lines.direction[f.index()] = in_plane(&own, &lines.corners(f), ruling.direction);
-        bent.push((f, ruling));
+        if let Some(d) = in_plane(&own, &lines.corners(f), ruling.direction) {
+            lines.passage[f.index()] = Passage::Along(d);
+            bent.push((f, ruling));
+        }
     }
-    let edges: Vec<EdgeId> = edges.into_iter().collect();
-    let whole = straight(flat, &edges).into_iter();
-    let mut found: Vec<[Point; 2]> = whole.map(|ends| ends.map(|v| place(flat, v))).collect();
     let size = |(_, ruling): &(FaceId, Ruling)| ruling.curvature.abs();
     bent.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    found.extend(bent.iter().filter_map(|(f, _)| lines.through(*f)));
+    bent.iter().for_each(|(f, _)| lines.draw(*f));
+    let left = edges.iter().filter(|(f, _)| !lines.is_passed[f.index()]);
+    let left: BTreeSet<EdgeId> = left.map(|(_, e)| *e).collect();
+    let whole = straight(flat, &left.into_iter().collect::<Vec<_>>()).into_iter();
+    let whole = whole.map(|ends| ends.map(|v| place(flat, v)));
     let stroke = |ends: [Point; 2]| Stroke {
         points: ends.to_vec(),
         class: LineClass::Ignored,
         angle: None,
     };
-    found.into_iter().map(stroke).collect()
+    whole.chain(lines.drawn).map(stroke).collect()
 }
 
-/// The directions of faces in the layout, and what lines have passed.
+/// Which lines a face lets pass.
+#[derive(Clone, Copy)]
+enum Passage {
+    /// None: it does not bend.
+    Flat,
+    /// All: it bends, and its direction is not known.
+    Any,
+    /// Lines along which it bends less than across them, with the direction of its own ruling, a unit vector.
+    Along(Point),
+}
+
+/// The lines in a layout.
 struct Lines<'a> {
     flat: &'a Sheet,
     /// The edges at which lines end: outlines and creases.
     is_rim: Vec<bool>,
-    /// Of each face that has a ruling, a unit vector.
-    direction: Vec<Option<Point>>,
+    passage: Vec<Passage>,
     is_passed: Vec<bool>,
+    drawn: Vec<[Point; 2]>,
+}
+
+/// A line through the centre of a face.
+struct Line {
+    ends: [Point; 2],
+    faces: Vec<FaceId>,
+    /// Whether an end is at an outline, a crease or a face that does not bend, as those of rulings are.
+    has_an_end: bool,
 }
 
 impl Lines<'_> {
@@ -100,53 +128,91 @@ impl Lines<'_> {
         self.topology().faces()[f.index()].map(|v| place(self.flat, v))
     }
 
-    /// The line through the centre of a face, if no line has passed it: along the mean direction of the
-    /// faces that the line along its own direction passes.
-    fn through(&mut self, f: FaceId) -> Option<[Point; 2]> {
-        let own = self.direction[f.index()].filter(|_| !self.is_passed[f.index()])?;
-        let (_, passed) = self.traced(f, own)?;
-        let along = passed.iter().filter_map(|f| self.direction[f.index()]);
-        let sum = along.fold([0.0, 0.0], |[x, y], d| {
-            let sign = (d[0] * own[0] + d[1] * own[1]).signum();
-            [x + sign * d[0], y + sign * d[1]]
-        });
+    /// Draws the line through the centre of a face, unless a line has passed it: along the mean direction of
+    /// the faces that the line along its own direction passes, up to the lines that are there.
+    fn draw(&mut self, f: FaceId) {
+        let Passage::Along(own) = self.passage[f.index()] else {
+            return;
+        };
+        if self.is_passed[f.index()] {
+            return;
+        }
+        let Some(first) = self.traced(f, own) else {
+            return;
+        };
+        let mut sum = [0.0, 0.0];
+        for f in &first.faces {
+            if let Passage::Along([x, y]) = self.passage[f.index()] {
+                let sign = (x * own[0] + y * own[1]).signum();
+                sum = [sum[0] + sign * x, sum[1] + sign * y];
+            }
+        }
         let length = sum[0].hypot(sum[1]);
-        let (ends, passed) = self.traced(f, sum.map(|c| c / length))?;
-        // A line within a face beside an outline has no direction to speak of.
-        if passed.len() == 1 {
-            return None;
+        // A line within a face has no direction to speak of, nor has one between faces that bend otherwise, as
+        // where the curvature changes its sign.
+        let line = self.traced(f, sum.map(|c| c / length));
+        if let Some(line) = line.filter(|line| line.faces.len() > 1 && line.has_an_end) {
+            line.faces
+                .iter()
+                .for_each(|f| self.is_passed[f.index()] = true);
+            self.drawn.push(line.ends);
         }
-        for f in passed {
-            self.is_passed[f.index()] = true;
-        }
-        Some(ends)
     }
 
-    /// The ends of a line through the centre of a face, and the faces that it passes.
-    fn traced(&self, first: FaceId, d: Point) -> Option<([Point; 2], Vec<FaceId>)> {
+    /// The line through the centre of a face in a direction, up to a face or a line that lets it not pass.
+    fn traced(&self, first: FaceId, d: Point) -> Option<Line> {
         let corners = self.corners(first);
         let centre = [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
-        let mut passed = vec![first];
+        let mut faces = vec![first];
         let mut ends = [centre; 2];
+        let mut has_an_end = false;
         for (end, d) in ends.iter_mut().zip([d, d.map(|c| -c)]) {
             let (mut f, mut reached) = (first, f64::NEG_INFINITY);
+            let limit = self.limit(&centre, &d);
             loop {
                 let (at, out) = leaves(&self.corners(f), &centre, &d)?;
                 // Beside a corner round-off may lead back.
                 if at < reached {
                     break;
                 }
-                reached = at;
-                let next = self.beyond(f, out).filter(|f| self.is_along(*f, &d));
-                let Some(next) = next.filter(|f| !passed.contains(f)) else {
+                reached = at.min(limit);
+                if limit < at {
+                    break;
+                }
+                let next = self.beyond(f, out);
+                let next = next.filter(|f| !matches!(self.passage[f.index()], Passage::Flat));
+                let Some(next) = next else {
+                    has_an_end = true;
                     break;
                 };
-                passed.push(next);
+                if !self.lets_pass(next, &d) || faces.contains(&next) {
+                    break;
+                }
+                faces.push(next);
                 f = next;
             }
             *end = [0, 1].map(|k| centre[k] + reached * d[k]);
         }
-        Some((ends, passed))
+        Some(Line {
+            ends,
+            faces,
+            has_an_end,
+        })
+    }
+
+    /// How far a ray goes up to the next line.
+    fn limit(&self, origin: &Point, d: &Point) -> f64 {
+        let crossing = |[p, q]: &[Point; 2]| {
+            let side = [q[0] - p[0], q[1] - p[1]];
+            let from = [p[0] - origin[0], p[1] - origin[1]];
+            let turn = d[0] * side[1] - d[1] * side[0];
+            let ray = (from[0] * side[1] - from[1] * side[0]) / turn;
+            let part = (from[0] * d[1] - from[1] * d[0]) / turn;
+            // (Of parallel lines both are not finite.)
+            ((0.0..=1.0).contains(&part) && ray > 0.0).then_some(ray)
+        };
+        let crossings = self.drawn.iter().filter_map(crossing);
+        crossings.fold(f64::INFINITY, f64::min)
     }
 
     /// The face on the other side of a face's `k`-th side, unless that is an outline or a crease.
@@ -158,13 +224,17 @@ impl Lines<'_> {
         others.filter(|_| !self.is_rim[e.index()]).find(|o| *o != f)
     }
 
-    /// Whether a face is bent less along a line than across it: of the curvature `k` across the ruling it has
-    /// `k sin^2` along a line that is turned from the ruling, and `k cos^2` across.
-    fn is_along(&self, f: FaceId, d: &Point) -> bool {
-        self.direction[f.index()].is_some_and(|own| {
-            let cosine = own[0] * d[0] + own[1] * d[1];
-            cosine * cosine > 0.5
-        })
+    /// Whether a face lets a line pass. Of the curvature `k` across its ruling it has `k sin^2` along a line
+    /// that is turned from the ruling, and `k cos^2` across.
+    fn lets_pass(&self, f: FaceId, d: &Point) -> bool {
+        match self.passage[f.index()] {
+            Passage::Flat => false,
+            Passage::Any => true,
+            Passage::Along(own) => {
+                let cosine = own[0] * d[0] + own[1] * d[1];
+                cosine * cosine > 0.5
+            }
+        }
     }
 }
 
