@@ -140,6 +140,11 @@ impl Convert {
         if self.input.is_dir() {
             return self.convert_run();
         }
+        if !self.input.exists() {
+            let message = format!("there is no {}", self.input.display());
+            let remedy = "name the folder of a run, a trajectory (.npz) or a mesh file";
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
         if self
             .input
             .extension()

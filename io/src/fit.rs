@@ -3,6 +3,7 @@
 use super::failure::{Code, Done, Failure};
 use super::interrupt;
 use super::message::{counted, print_progress, print_result};
+use super::write::is_same_file;
 use clap::Args;
 use isosheet_files::{DataError, write_atomically};
 use isosheet_mesh::Advice;
@@ -78,6 +79,9 @@ impl FitArgs {
             false => FitRuns::Motion,
         };
         let fit = Fit::new(&self.scene, self.edits, self.vary, self.to, runs)?;
+        for note in fit.notes() {
+            print_progress(format_args!("note: {note}"));
+        }
         let folder = tempfile::tempdir().map_err(|e| {
             Failure::new(Code::Output, format!("cannot make a temporary folder: {e}"))
         })?;
@@ -105,7 +109,17 @@ impl FitArgs {
         let text = &fitted.scene.text().text;
         write_atomically(&out, |file| file.write_all(text.as_bytes()))
             .map_err(|e| Failure::of(Code::Output, &e))?;
-        print_result(format_args!("{}", report(&fitted, &out)))
+        print_result(format_args!("{}", lines(&fitted)))?;
+        let count = counted(fitted.runs, "run", "runs");
+        match missed(&fitted) {
+            None => print_result(format_args!("fitted: {count}; see {}", out.display())),
+            Some(missed) => {
+                let message = format!("{missed}: {count}; see {}", out.display());
+                Err(Failure::new(Code::Step, message).remedy(
+                    "begin at other values by `--set`, widen the ranges, or choose keys on which the targets depend",
+                ))
+            }
+        }
     }
 
     /// Where the scene is written: its paths are relative to its folder.
@@ -119,6 +133,14 @@ impl FitArgs {
             let message = format!("{} is not in the folder of the scene", out.display());
             return Err(Failure::misuse(message).remedy("its paths are relative to that folder"));
         }
+        if is_same_file(&self.scene, &out) {
+            let message = format!("{} is the scene that is read", out.display());
+            return Err(Failure::misuse(message).remedy("choose another name"));
+        }
+        if out.extension().is_none_or(|e| e != "toml") {
+            let message = format!("{} is no name of a scene", out.display());
+            return Err(Failure::misuse(message).remedy("choose one that ends with .toml"));
+        }
         if out.exists() && !self.force {
             let message = format!("{} is there already", out.display());
             return Err(Failure::misuse(message).remedy("choose another name, or give `--force`"));
@@ -127,26 +149,25 @@ impl FitArgs {
     }
 }
 
-/// The lines of the result.
-fn report(fitted: &Fitted, out: &Path) -> String {
+/// The values, what the run ends with, and the runs that failed.
+fn lines(fitted: &Fitted) -> String {
     let mut lines = Vec::new();
     for value in &fitted.values {
         let deviation = match value.deviation {
             Some(deviation) => format!(" +- {}", brief(deviation)),
             None => String::new(),
         };
-        let end = if value.is_at_end {
-            ", an end of its range"
-        } else {
-            ""
+        let besides = match (value.is_at_end, value.is_determined) {
+            (true, _) => ", an end of its range",
+            (_, false) => ", not determined: other values do as well, with others of other keys",
+            _ => "",
         };
         lines.push(format!(
-            "{} = {}{deviation}{end}",
+            "{} = {}{deviation}{besides}",
             value.key,
             six_digits(value.value)
         ));
     }
-    let mut missed = Vec::new();
     for reached in &fitted.targets {
         let (found, unit) = (six_digits(reached.found), &reached.unit);
         lines.push(match &reached.target {
@@ -157,28 +178,27 @@ fn report(fitted: &Fitted, out: &Path) -> String {
                 format!("vertices end {found} m (rms) from {}", path.display())
             }
         });
-        if !reached.is_met() {
-            missed.push(format!("`{}`", reached.target));
-        }
     }
-    let what = match (fitted.is_found, &missed[..]) {
-        (false, _) => "not settled: the search took its most steps".to_owned(),
-        (true, []) => "fitted".to_owned(),
-        (true, missed) => format!(
-            "fitted as well as can be, and not met: {}",
-            missed.join(", ")
-        ),
-    };
-    let many = match fitted.is_one_of_many {
-        true => ", one of many solutions, as there are more keys than numbers to reach",
-        false => "",
-    };
-    lines.push(format!(
-        "{what}{many}: {}; see {}",
-        counted(fitted.runs, "run", "runs"),
-        out.display()
-    ));
+    if let Some((count, why)) = &fitted.failed {
+        let count = counted(*count, "run", "runs");
+        lines.push(format!("{count} failed, the last of them: {why}"));
+    }
     lines.join("\n")
+}
+
+/// What was asked for and is not met, if anything.
+fn missed(fitted: &Fitted) -> Option<String> {
+    let missed = fitted.targets.iter().filter(|target| !target.is_met());
+    let missed: Vec<String> = missed.map(|t| format!("`{}`", t.target)).collect();
+    match (missed.is_empty(), fitted.is_found) {
+        (false, true) => Some(format!(
+            "not met, and as near as it gets: {}",
+            missed.join(", ")
+        )),
+        (false, false) => Some(format!("not met in the most steps: {}", missed.join(", "))),
+        (true, false) => Some("not settled in the most steps".to_owned()),
+        (true, true) => None,
+    }
 }
 
 /// A number with six significant digits: fits are right to fewer.

@@ -12,8 +12,9 @@ pub use target::FitTarget;
 use crate::{Recording, RunError, simulate_recorded};
 use isosheet_files::DataError;
 use isosheet_formats::read_mesh;
+use isosheet_mesh::wording::given;
 use isosheet_scenes::SceneFile;
-use least_squares::{Minimum, Point, least_squares};
+use least_squares::{DETERMINED, DIFFERENCE, Minimum, Point, combinations, least_squares};
 use nalgebra::DVector;
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -34,7 +35,7 @@ pub enum FitRuns {
 ///
 /// The fit minimises the sum of `((found - asked) / sigma)^2` over all targets, with `sigma = 1` where no
 /// target has one, by the method of Gauss and Newton with the damping of Levenberg and Marquardt (Marquardt
-/// 1963) and one-sided differences. A step takes as many runs as there are keys, and one or more besides.
+/// 1963) and derivatives by differences. A step takes two runs for each key, and one or more besides.
 #[derive(Clone, Debug)]
 pub struct Fit {
     path: PathBuf,
@@ -43,6 +44,7 @@ pub struct Fit {
     targets: Vec<Wanted>,
     runs: FitRuns,
     start: Vec<f64>,
+    notes: Vec<String>,
 }
 
 /// A target with what its runs are compared with.
@@ -75,9 +77,11 @@ pub struct FittedValue {
     pub value: f64,
     /// The standard deviation: the root of the diagonal of `s^2 (J^T J)^-1` with the derivatives `J` of the
     /// differences. `s` is 1 where targets have standard deviations, and otherwise the root of the sum of the
-    /// squares over the number of values less that of keys. None where there are no more values than keys, or
-    /// at an end of the range.
+    /// squares over the number of values less that of keys. None where there are no more values than keys, at
+    /// an end of the range, and of a key that is not determined.
     pub deviation: Option<f64>,
+    /// Whether the targets determine it, and no combination of it with others alone.
+    pub is_determined: bool,
     /// Whether it is at an end of its range.
     pub is_at_end: bool,
 }
@@ -110,8 +114,8 @@ pub struct Fitted {
     pub runs: usize,
     /// Whether the search came to its end.
     pub is_found: bool,
-    /// Whether there are fewer numbers than keys, so that other values do as well.
-    pub is_one_of_many: bool,
+    /// The number of runs that failed, and why the last one did.
+    pub failed: Option<(usize, String)>,
     /// The scene with the values.
     pub scene: SceneFile,
 }
@@ -151,14 +155,22 @@ impl Fit {
         }
         let file = SceneFile::read(path, &edits)?;
         let text: Option<toml::Value> = file.text().text.parse().ok().map(toml::Value::Table);
-        let in_scene = |range: &FitRange| {
-            let value = range.place().find(text.as_ref()?)?;
-            value
-                .as_float()
-                .or_else(|| value.as_integer().map(|n| n as f64))
-        };
-        let start = |range: &FitRange| in_scene(range).map_or(0.5, |value| range.part(value));
-        let start = ranges.iter().map(start).collect();
+        let in_scene = |range: &FitRange| range.place().find(text.as_ref()?);
+        let mut notes = Vec::new();
+        let mut start = Vec::new();
+        for range in &ranges {
+            let value = in_scene(range);
+            let value = value.and_then(|v| v.as_float().or(v.as_integer().map(|n| n as f64)));
+            start.push(value.map_or(0.5, |value| range.part(value)));
+            let [from, to] = range.ends();
+            if let Some(value) = value.filter(|value| !(from..=to).contains(value)) {
+                notes.push(format!(
+                    "the search begins at an end of the range of `{}`, which is {} in the scene",
+                    range.key(),
+                    given(value)
+                ));
+            }
+        }
         let mut fit = Self {
             path: path.to_owned(),
             edits,
@@ -166,11 +178,23 @@ impl Fit {
             targets: Vec::new(),
             runs,
             start,
+            notes,
         };
-        let setup = fit
-            .scene(&fit.start)?
-            .build()
-            .map_err(isosheet_scenes::SceneFileError::from)?;
+        let built = fit.scene(&fit.start).and_then(|file| Ok(file.build()?));
+        let setup = built.map_err(|error| {
+            let is_whole = |range: &&FitRange| in_scene(range).is_some_and(|v| v.is_integer());
+            let whole = fit.ranges.iter().filter(is_whole);
+            let mut refused = whole.filter(|range| {
+                let edit = format!("{}={:?}", range.key(), range.value(0.5));
+                SceneFile::read(path, &[edit]).is_err()
+            });
+            match refused.next() {
+                Some(range) => FitError::Whole {
+                    key: range.key().to_owned(),
+                },
+                None => FitError::Scene(error),
+            }
+        })?;
         for target in targets {
             let wanted = match &target {
                 FitTarget::Measure { name, .. } => {
@@ -231,6 +255,11 @@ impl Fit {
         }
     }
 
+    /// What to know before the search.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
     fn has_sigmas(&self) -> bool {
         self.targets
             .iter()
@@ -246,7 +275,13 @@ impl Fit {
 
     /// The scene of a point.
     fn scene(&self, at: &[f64]) -> Result<SceneFile, isosheet_scenes::SceneFileError> {
-        let edits = [self.edits.clone(), self.edits_at(at)].concat();
+        // (A key that is set and varied has the value of the point alone.)
+        let is_varied = |edit: &&String| {
+            let key = edit.split('=').next().unwrap_or_default().trim();
+            self.ranges.iter().any(|range| range.key() == key)
+        };
+        let own = self.edits.iter().filter(|edit| !is_varied(edit)).cloned();
+        let edits: Vec<String> = own.chain(self.edits_at(at)).collect();
         SceneFile::read(&self.path, &edits)
     }
 
@@ -356,7 +391,7 @@ impl Fit {
             differences: differences?,
         };
         let runs = AtomicUsize::new(1);
-        let mut failure = None;
+        let mut failures = Vec::new();
         let mut evaluate = |points: &[Vec<f64>]| {
             runs.fetch_add(points.len(), Ordering::Relaxed);
             let found = self.run_all(points, folder, jobs, watch).into_iter();
@@ -364,7 +399,7 @@ impl Fit {
                 Ok(differences) => Ok(Some(differences)),
                 Err(FitError::Interrupted) => Err(FitError::Interrupted),
                 Err(error) => {
-                    failure = Some(error);
+                    failures.push(error);
                     Ok(None)
                 }
             };
@@ -382,24 +417,37 @@ impl Fit {
         };
         let minimum = least_squares(start.clone(), &mut evaluate, &mut tell)?;
         let Some(minimum) = minimum else {
-            return Err(failure.unwrap_or(FitError::Interrupted));
+            return Err(failures.pop().unwrap_or(FitError::Interrupted));
         };
-        self.fitted(&start, &minimum, runs.into_inner())
+        let last = failures.last().map(|error| {
+            let text = error.to_string();
+            text.lines().next().unwrap_or_default().to_owned()
+        });
+        let failed = last.map(|why| (failures.len(), why));
+        self.fitted(&start, &minimum, runs.into_inner(), failed)
     }
 
     /// What was found, in words of the scene.
-    fn fitted(&self, start: &Point, minimum: &Minimum, runs: usize) -> Result<Fitted, FitError> {
+    fn fitted(
+        &self,
+        start: &Point,
+        minimum: &Minimum,
+        runs: usize,
+        failed: Option<(usize, String)>,
+    ) -> Result<Fitted, FitError> {
         let Minimum {
             point,
             jacobian,
             is_found,
         } = minimum;
         let at_end = |part: f64| part <= 0.0 || part >= 1.0;
-        for (range, column) in self.ranges.iter().zip(jacobian.column_iter()) {
+        for (k, column) in jacobian.column_iter().enumerate() {
+            let range = &self.ranges[k];
             if column.iter().all(|slope| *slope == 0.0) {
                 return Err(FitError::NoEffect {
                     key: range.key().to_owned(),
-                    ends: range.ends(),
+                    step: DIFFERENCE * range.slope(point.at[k]),
+                    value: range.value(point.at[k]),
                 });
             }
         }
@@ -413,14 +461,32 @@ impl Fit {
             (false, spare) => Some(point.cost() / spare as f64),
         };
         let own = jacobian.select_columns(&free);
-        let covariance = variance.and_then(|s| Some(own.tr_mul(&own).try_inverse()? * s));
+        let (sizes, vectors, lengths) = combinations(&own);
+        let vectors = &vectors;
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let is_weak = |n: usize| sizes[n] <= DETERMINED * largest;
         let value = |(k, range): (usize, &FitRange)| {
             let place = free.iter().position(|own| *own == k);
-            let variance = covariance.as_ref().zip(place).map(|(c, own)| c[(own, own)]);
+            // A combination that is not determined has parts of the keys that are not.
+            let parts = |own: usize| (0..free.len()).map(move |n| (n, vectors[(own, n)]));
+            let weak = place.map_or(0.0, |own| {
+                parts(own)
+                    .filter(|(n, _)| is_weak(*n))
+                    .map(|(_, part)| part * part)
+                    .sum::<f64>()
+            });
+            let is_determined = weak <= DETERMINED;
+            let own = place.filter(|_| is_determined).zip(variance);
+            let deviation = own.map(|(own, variance)| {
+                let strong = parts(own).filter(|(n, _)| !is_weak(*n));
+                let sum: f64 = strong.map(|(n, part)| (part / sizes[n]).powi(2)).sum();
+                (variance * sum).sqrt() / lengths[own] * range.slope(point.at[k])
+            });
             FittedValue {
                 key: range.key().to_owned(),
                 value: range.value(point.at[k]),
-                deviation: variance.map(|v| v.sqrt() * range.slope(point.at[k])),
+                deviation,
+                is_determined,
                 is_at_end: at_end(point.at[k]),
             }
         };
@@ -456,7 +522,7 @@ impl Fit {
             rms: rms(&point.differences),
             runs,
             is_found: *is_found,
-            is_one_of_many: point.differences.len() < point.at.len(),
+            failed,
             scene: self.scene(&point.at)?,
         })
     }

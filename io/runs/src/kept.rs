@@ -162,7 +162,7 @@ impl KeptAngles {
         if let Some(bend) = &self.sheet {
             let radius = |curvature: f64| brief(1.0 / curvature.abs());
             words.push(format!(
-                "the sheet keeps a radius of curvature of {} m near {}, where it was bent to {} m under load",
+                "the sheet keeps a radius of curvature of {} m at {} of the flat sheet, where it was bent to {} m under load",
                 radius(bend.curvature),
                 place(&bend.at),
                 radius(bend.loaded)

@@ -49,7 +49,7 @@ impl Advice for LayersError {
         Some(match self {
             Self::NoPattern => "give the folder of a run of `isosheet fold`",
             Self::NotFlat { .. } => {
-                "layers are of a sheet that is folded flat: fold it to all of its angles, without `--part` or `--angle`"
+                "layers are of a sheet that is folded flat, by 180 degrees at each crease"
             }
             Self::Passing { .. } | Self::Touching { .. } => {
                 "fold the pattern with `--contact`, so that panels keep a gap"

@@ -4,7 +4,7 @@ use crate::RunError;
 use isosheet_files::DataError;
 use isosheet_formats::MeshFileError;
 use isosheet_mesh::Advice;
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_scenes::SceneFileError;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -55,13 +55,21 @@ pub enum FitError {
         #[source]
         source: RunError,
     },
-    /// A key has no effect on the targets.
-    #[error("`{key}` changes nothing of the targets from {} to {}", given(ends[0]), given(ends[1]))]
+    /// A key whose value is a whole number.
+    #[error("`{key}` takes whole numbers")]
+    Whole {
+        /// The key.
+        key: String,
+    },
+    /// A small change of a key has no effect on the targets.
+    #[error("a change of `{key}` by {} at {} changes nothing of the targets", brief(*step), given(*value))]
     NoEffect {
         /// The key.
         key: String,
-        /// Its range.
-        ends: [f64; 2],
+        /// The change.
+        step: f64,
+        /// Its value.
+        value: f64,
     },
     /// Whoever waits for the fit has given up.
     #[error("interrupted")]
@@ -91,9 +99,11 @@ impl Advice for FitError {
             Self::Run { source, .. } => source.advice().or(Some(
                 "begin at other values of the keys, or give ranges in which all runs come to their end",
             )),
-            Self::NoEffect { .. } => {
-                Some("leave the key out, or choose targets that depend on it")
-            }
+            Self::Whole { .. } => Some("compare some of its values by `isosheet sweep`"),
+            Self::NoEffect { .. } => Some(
+                "leave the key out, or choose targets that depend on it; a key with which the run changes by leaps is one for \
+                 `isosheet sweep`",
+            ),
             Self::Interrupted => None,
         }
     }

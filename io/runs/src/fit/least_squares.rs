@@ -2,9 +2,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Where the differences are taken, the part of a parameter's range: runs are exact to their tolerances, and
-/// differences of less than a thousandth of a range would be those of round-off and of tolerances.
-const DIFFERENCE: f64 = 1e-3;
+/// Where the differences are taken, the part of a parameter's range. Derivatives are of second order, so that
+/// they are right to some 1e-6 where a target is smooth; runs are exact to some 1e-9, and differences over less
+/// would be those of their tolerances.
+pub(super) const DIFFERENCE: f64 = 1e-3;
+
+/// A combination of parameters is determined whose effect is more than this part of the largest one, each
+/// parameter by the size of its own: a hundred times the error of a derivative.
+pub(super) const DETERMINED: f64 = 1e-4;
 
 /// The search ends where a step changes no parameter by more than this part of its range, near the tolerances
 /// of runs.
@@ -16,6 +21,12 @@ const GROWTH: f64 = 10.0;
 
 /// The largest damping: steps along the gradient that are shorter than [`SMALLEST`].
 const MOST_DAMPING: f64 = 1e6;
+
+/// The search ends where the differences are this part of the ones at its start.
+const ENOUGH: f64 = 1e-8;
+
+/// The search ends where a step makes the sum of the squares smaller by less than this part.
+const GAIN: f64 = 1e-6;
 
 /// Most steps of a search. (Gauss and Newton's takes less than ten where differences can be made to vanish.)
 const MOST_STEPS: usize = 50;
@@ -50,7 +61,8 @@ pub(super) type Evaluate<'a, E> =
     dyn FnMut(&[Vec<f64>]) -> Result<Vec<Option<DVector<f64>>>, E> + 'a;
 
 /// Finds parameters in `[0, 1]` with the least sum of squares of the differences, by the method of Gauss and
-/// Newton with the damping of Levenberg and Marquardt and derivatives by differences in one direction. A
+/// Newton with the damping of Levenberg and Marquardt and derivatives by
+/// differences. A
 /// parameter that a step would move beyond a bound stays there. None where a derivative cannot be computed.
 ///
 /// # Errors
@@ -60,6 +72,7 @@ pub(super) fn least_squares<E>(
     evaluate: &mut Evaluate<'_, E>,
     watch: &mut dyn FnMut(&Point),
 ) -> Result<Option<Minimum>, E> {
+    let enough = ENOUGH * ENOUGH * start.cost();
     let mut point = start;
     let mut damping = 0.0;
     for _ in 0..MOST_STEPS {
@@ -74,6 +87,9 @@ pub(super) fn least_squares<E>(
                 is_found,
             }))
         };
+        if point.cost() <= enough {
+            return ended(point, true);
+        }
         loop {
             let Some(at) = step(&point, &jacobian, damping) else {
                 return ended(point, true);
@@ -85,6 +101,9 @@ pub(super) fn least_squares<E>(
                 .take()
                 .map(|differences| Point { at, differences });
             match next.filter(|next| next.cost() < point.cost()) {
+                Some(next) if next.cost() > (1.0 - GAIN) * point.cost() => {
+                    return ended(next, true);
+                }
                 Some(next) => {
                     point = next;
                     damping = if damping > DAMPING {
@@ -110,39 +129,84 @@ pub(super) fn least_squares<E>(
     }))
 }
 
-/// The derivatives of the differences, by differences toward the middle of each range.
+/// The derivatives of the differences: central ones, at the ends of ranges of second order from inside, and of
+/// first order where the run at one place fails.
 fn jacobian<E>(point: &Point, evaluate: &mut Evaluate<'_, E>) -> Result<Option<DMatrix<f64>>, E> {
-    let count = point.at.len();
-    let moved = |k: usize, by: f64| {
-        let mut at = point.at.clone();
-        at[k] += by;
-        at
+    let steps = |at: f64| match at {
+        _ if at < DIFFERENCE => [DIFFERENCE, 2.0 * DIFFERENCE],
+        _ if at > 1.0 - DIFFERENCE => [-DIFFERENCE, -2.0 * DIFFERENCE],
+        _ => [DIFFERENCE, -DIFFERENCE],
     };
-    let inward = |k: usize| {
-        if point.at[k] > 0.5 {
-            -DIFFERENCE
-        } else {
-            DIFFERENCE
+    let mut places = Vec::with_capacity(2 * point.at.len());
+    for (k, at) in point.at.iter().enumerate() {
+        for step in steps(*at) {
+            let mut place = point.at.clone();
+            place[k] += step;
+            places.push(place);
         }
-    };
-    let mut found = evaluate(&(0..count).map(|k| moved(k, inward(k))).collect::<Vec<_>>())?;
-    let mut columns = Vec::with_capacity(count);
-    for (k, found) in found.iter_mut().enumerate() {
-        let (mut by, mut found) = (inward(k), found.take());
-        if found.is_none() {
-            by = -by;
-            let at = moved(k, by);
-            if !(0.0..=1.0).contains(&at[k]) {
-                return Ok(None);
+    }
+    let found = evaluate(&places)?;
+    let mut columns = Vec::with_capacity(point.at.len());
+    for (at, found) in point.at.iter().zip(found.as_chunks::<2>().0) {
+        let [p, q] = steps(*at);
+        let here = &point.differences;
+        columns.push(match found {
+            // The parabola through three places.
+            [Some(a), Some(b)] => {
+                (a - here) * (q / (p * (q - p))) - (b - here) * (p / (q * (q - p)))
             }
-            found = evaluate(&[at])?.pop().flatten();
-        }
-        let Some(found) = found else {
-            return Ok(None);
-        };
-        columns.push((found - &point.differences) / by);
+            [Some(a), None] => (a - here) / p,
+            [None, Some(b)] => (b - here) / q,
+            [None, None] => return Ok(None),
+        });
     }
     Ok(Some(DMatrix::from_columns(&columns)))
+}
+
+/// The singular values and the right singular vectors of derivatives whose columns have unit length, and the
+/// lengths (one where a column is zero).
+pub(super) fn combinations(jacobian: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>, Vec<f64>) {
+    let lengths: Vec<f64> = jacobian
+        .column_iter()
+        .map(|column| match column.norm() {
+            0.0 => 1.0,
+            norm => norm,
+        })
+        .collect();
+    let mut scaled = jacobian.clone();
+    for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
+        column /= *length;
+    }
+    if jacobian.ncols() == 0 {
+        return (DVector::zeros(0), DMatrix::zeros(0, 0), lengths);
+    }
+    // Eigenvectors of the normal matrix: there may be fewer differences than parameters.
+    let own = scaled.tr_mul(&scaled).symmetric_eigen();
+    let values = own.eigenvalues.map(|value| value.max(0.0).sqrt());
+    (values, own.eigenvectors, lengths)
+}
+
+/// The change of the parameters that makes the linearised differences smallest, damped: of combinations that
+/// are not determined by nothing.
+fn damped(jacobian: &DMatrix<f64>, differences: &DVector<f64>, damping: f64) -> DVector<f64> {
+    let (values, vectors, lengths) = combinations(jacobian);
+    let largest = values.max();
+    let mut slopes = -jacobian.tr_mul(differences);
+    for (slope, length) in slopes.iter_mut().zip(&lengths) {
+        *slope /= *length;
+    }
+    let mut parts = vectors.tr_mul(&slopes);
+    for (part, value) in parts.iter_mut().zip(values.iter()) {
+        *part = match *value > DETERMINED * largest {
+            true => *part / (value * value + damping),
+            false => 0.0,
+        };
+    }
+    let mut change = vectors * parts;
+    for (change, length) in change.iter_mut().zip(&lengths) {
+        *change /= *length;
+    }
+    change
 }
 
 /// Where a step goes; none where it would not go further than [`SMALLEST`].
@@ -161,13 +225,7 @@ fn step(point: &Point, jacobian: &DMatrix<f64>, damping: f64) -> Option<Vec<f64>
             return None;
         }
         let own = jacobian.select_columns(&free);
-        let mut normal = own.tr_mul(&own);
-        for k in 0..free.len() {
-            normal[(k, k)] *= 1.0 + damping;
-        }
-        let slopes = DVector::from_iterator(free.len(), free.iter().map(|k| gradient[*k]));
-        // Parameters on which nothing depends stay where they are.
-        let change = normal.svd(true, true).solve(&-slopes, f64::EPSILON).ok()?;
+        let change = damped(&own, &point.differences, damping);
         let mut at = point.at.clone();
         for (k, change) in free.iter().zip(change.iter()) {
             at[*k] += change;
@@ -175,9 +233,7 @@ fn step(point: &Point, jacobian: &DMatrix<f64>, damping: f64) -> Option<Vec<f64>
         let beyond: Vec<usize> = free
             .iter()
             .copied()
-            .filter(|k| {
-                !(0.0..=1.0).contains(&at[*k]) && (point.at[*k] <= 0.0 || point.at[*k] >= 1.0)
-            })
+            .filter(|k| at[*k] < 0.0 && point.at[*k] <= 0.0 || at[*k] > 1.0 && point.at[*k] >= 1.0)
             .collect();
         if !beyond.is_empty() {
             beyond.iter().for_each(|k| is_free[*k] = false);
@@ -231,6 +287,30 @@ mod tests {
         });
         assert_eq!(minimum.point.at[0], 0.0);
         assert!((minimum.point.at[1] - 0.25).abs() < SMALLEST, "{minimum:?}");
+    }
+
+    /// A start at an end of its range is left, also by a step that would go beyond the other end.
+    #[test]
+    fn starts_at_ends_are_left() {
+        for start in [0.0, 1.0] {
+            let minimum = found(&[start], |at| Some(vec![(3.0 * at[0] - 1.0).powi(3)]));
+            assert!(
+                (minimum.point.at[0] - 1.0 / 3.0).abs() < 0.02,
+                "{minimum:?}"
+            );
+        }
+    }
+
+    /// Of two parameters of which one combination matters the search changes that alone.
+    #[test]
+    fn what_is_not_determined_stays() {
+        let minimum = found(&[0.2, 0.6], |at| {
+            Some(vec![at[0] + at[1] - 1.0, 2.0 * (at[0] + at[1] - 1.0)])
+        });
+        assert!(minimum.is_found);
+        for (found, expected) in minimum.point.at.iter().zip([0.3, 0.7]) {
+            assert!((found - expected).abs() < 1e-6, "{minimum:?}");
+        }
     }
 
     /// A step to where nothing can be computed is shortened.

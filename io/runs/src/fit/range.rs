@@ -94,7 +94,11 @@ impl FromStr for FitRange {
                 given(from),
                 given(to)
             );
-            return Err(DataError::new(message, "give the smaller end first"));
+            let remedy = match from < to {
+                true => "give finite ends",
+                false => "give the smaller end first",
+            };
+            return Err(DataError::new(message, remedy));
         }
         Ok(Self { key, place, ends })
     }

@@ -6,6 +6,9 @@ use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 
+/// The vector area of faces that close up is less than this part of their areas: round-off, many times over.
+const CLOSED: f64 = 1e-9;
+
 /// Faces of a sheet, and the direction in which they face together.
 #[derive(Clone, Debug)]
 pub(super) struct Facing {
@@ -13,10 +16,11 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// The faces that have all corners among `corners`.
+    /// The faces that have all corners among `corners`, with the positions `x` at the start (`3V`, metres).
     pub(super) fn new(
         corners: &[VertexId],
         faces: &[[VertexId; 3]],
+        x: &[f64],
         key: &Key,
     ) -> Result<Self, Problem> {
         let corners: HashSet<_> = corners.iter().collect();
@@ -29,17 +33,31 @@ impl Facing {
             let remedy = "choose a region that has whole faces in it";
             return Err(Problem::new(key.clone(), message, remedy));
         }
-        Ok(Self { faces })
+        let part = Self { faces };
+        let areas = part.areas(x).map(|area| area.norm());
+        if part.area(x).norm() <= CLOSED * areas.sum::<f64>() {
+            let message = "these faces close up, and face to no side";
+            return Err(Problem::new(
+                key.clone(),
+                message,
+                "choose faces on one side",
+            ));
+        }
+        Ok(part)
     }
 
-    /// The vector area, square metres.
-    fn area(&self, x: &[f64]) -> Vector3<f64> {
+    /// The vector area of each face, square metres.
+    fn areas<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = Vector3<f64>> + 'a {
         let points = x.as_chunks::<3>().0;
-        let of_face = |corners: &[VertexId; 3]| {
+        self.faces.iter().map(|corners| {
             let [a, b, c] = corners.map(|v| Vector3::from(points[v.index()]));
             (b - a).cross(&(c - a)) / 2.0
-        };
-        self.faces.iter().map(of_face).sum()
+        })
+    }
+
+    /// The vector area of all, square metres.
+    fn area(&self, x: &[f64]) -> Vector3<f64> {
+        self.areas(x).sum()
     }
 
     /// The angle between the vector areas of both, degrees.

@@ -101,7 +101,7 @@ pub enum Quantity {
     /// The angle between two parts of a sheet, degrees: between the flanges of a bent blank, or the ends of a
     /// strip. A part has the faces whose corners are all among the vertices. It faces along its vector area,
     /// the sum of `(b - a) x (c - a) / 2` over its faces. The angle is 0 in a flat sheet, and 180 where one
-    /// part is folded onto the other.
+    /// part is folded onto the other; beyond that it falls again.
     AngleTo(Selection),
     /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: it
     /// excludes the bend of a sheet over the faces beside it, which the angle between these faces includes.
@@ -275,11 +275,17 @@ impl Measure {
         let at = self.at.as_ref().unwrap_or(&Selection::All);
         let vertices = find(at, key)?;
         if let Quantity::AngleTo(others) = &self.quantity {
+            if sheet.is_some_and(|name| bodies.named(name).is_some()) {
+                let message = "the angle is one between parts of sheets, and this is a body";
+                let remedy = "name a sheet";
+                return Err(Problem::new(key.name("sheet"), message, remedy));
+            }
             let other_key = key.name("quantity.angle_to");
             let others = find(others, &other_key)?;
             let faces = sheets.union.topology().faces();
             let parts = [(&vertices, key.name("at")), (&others, other_key)];
-            let [one, other] = parts.map(|(corners, key)| Facing::new(corners, faces, &key));
+            let [one, other] =
+                parts.map(|(corners, key)| Facing::new(corners, faces, &sheets.start, &key));
             let of = Reading::Angle(one?, other?);
             return Ok(Gauge { name, of });
         }

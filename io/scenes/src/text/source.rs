@@ -192,11 +192,10 @@ impl SceneFile {
                     written.unwrap_or_else(|| toml::to_string(&self.scene).unwrap_or_default())
                 }
             };
-            let changed = self.changed.iter().map(Key::to_string);
             SceneText {
                 path: path.clone(),
                 text,
-                edits: edits.iter().cloned().chain(changed).collect(),
+                edits: edits.clone(),
             }
         })
     }

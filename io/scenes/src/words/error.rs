@@ -19,7 +19,7 @@ pub struct SceneText {
     pub path: PathBuf,
     /// What is in it, edits included.
     pub text: String,
-    /// The edits, `key=value`, or the keys that a program has changed.
+    /// The edits, `key=value`.
     pub edits: Vec<String>,
 }
 
