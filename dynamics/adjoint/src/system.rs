@@ -141,7 +141,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         is_fresh = true;
         z.fill(0.0);
     }
-    if !(solved.residual <= UNSOLVED) {
+    if solved.residual.is_nan() || solved.residual > UNSOLVED {
         return Err(AdjointError::Unsolved {
             t,
             residual: solved.residual,

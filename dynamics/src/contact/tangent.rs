@@ -91,8 +91,7 @@ impl ContactTerm {
             &state.barrier,
             (&step.lagged_at, &step.lagged_bodies),
             (step.places(), state.active.bodies()),
-            &w,
-            scale,
+            (&w, scale),
             &mut of_points,
         );
         hand_on(step.points.as_deref(), &of_points, out);
