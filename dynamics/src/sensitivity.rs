@@ -2,5 +2,6 @@
 
 mod equations;
 
+pub use crate::contact::ReachedPairs;
 pub use crate::step::accepted::{AcceptedStep, OfState, StepEvent, StepKind};
 pub use equations::{FrictionLag, StepEquations};

@@ -11,7 +11,7 @@ use crate::rows::Rows;
 use crate::run::Neighbours;
 use crate::system::{Request, Solution, solve};
 use isosheet_dynamics::Simulation;
-use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, OfState, StepKind};
+use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, OfState, ReachedPairs, StepKind};
 use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Memories;
 use isosheet_materials::vectors::dot;
@@ -251,6 +251,7 @@ impl<'o> Sweep<'o> {
             multipliers,
             image,
             memory,
+            pairs,
             passed,
         } = solve(Request {
             simulation: &mut self.base,
@@ -281,14 +282,13 @@ impl<'o> Sweep<'o> {
                 }
             }
         }
-        self.numbers_back(step, level, &w, &multipliers)?;
+        self.numbers_back(step, level, (&w, &multipliers), &pairs)?;
         let mut next = vec![0.0; n];
         let mut equations = self
             .base
             .step_equations()
             .ok_or(AdjointError::Method { number: 0 })?;
-        let begun = equations.begin(step, level.lag, level.x);
-        begun.map_err(|source| AdjointError::Equations { t, source })?;
+        equations.go_on(step);
         if !level.is_settled {
             let mut products = vec![0.0; n];
             equations.add_lag_products(step, level.x, &w, &mut products);
@@ -320,8 +320,8 @@ impl<'o> Sweep<'o> {
         &mut self,
         step: &AcceptedStep,
         level: Level<'_>,
-        w: &[f64],
-        multipliers: &[f64],
+        (w, multipliers): (&[f64], &[f64]),
+        pairs: &ReachedPairs,
     ) -> Result<(), AdjointError> {
         let t = step.end.t;
         for neighbours in &mut self.neighbours {
@@ -345,7 +345,7 @@ impl<'o> Sweep<'o> {
                 let mut equations = simulation
                     .step_equations()
                     .ok_or(AdjointError::Method { number: 0 })?;
-                let begun = equations.begin(step, lag, &x);
+                let begun = equations.begin_like(step, lag, &x, pairs);
                 begun.map_err(|source| AdjointError::Equations { t, source })?;
                 let mut residual = vec![0.0; x.len()];
                 equations.residual(step, &x, &mut residual);

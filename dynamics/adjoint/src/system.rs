@@ -9,7 +9,7 @@ use crate::memory::add_memory_products;
 use crate::options::AdjointOptions;
 use crate::rows::Rows;
 use isosheet_dynamics::Simulation;
-use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, StepEquations};
+use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, ReachedPairs, StepEquations};
 use isosheet_materials::NoDerivative;
 use isosheet_model::{PINNED, SheetModel};
 use std::sync::Arc;
@@ -53,6 +53,8 @@ pub(crate) struct Solution {
     pub(crate) image: Vec<f64>,
     /// Derivatives of `w . R` by what potentials remember.
     pub(crate) memory: Vec<Vec<f64>>,
+    /// The pairs of contact.
+    pub(crate) pairs: ReachedPairs,
     /// What counted as constant.
     pub(crate) passed: Vec<NoDerivative>,
 }
@@ -141,7 +143,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         is_fresh = true;
         z.fill(0.0);
     }
-    if !(solved.residual <= UNSOLVED) {
+    if solved.residual.is_nan() || solved.residual > UNSOLVED {
         return Err(AdjointError::Unsolved {
             t,
             residual: solved.residual,
@@ -156,11 +158,13 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
     passed.dedup();
     let image = std::mem::take(&mut operator.out);
     let memory = operator.memory_of(&w);
+    let pairs = operator.equations.pairs();
     Ok(Solution {
         w,
         multipliers: multipliers.to_vec(),
         image,
         memory,
+        pairs,
         passed,
     })
 }

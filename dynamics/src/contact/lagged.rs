@@ -495,8 +495,7 @@ impl LaggedFriction {
         barrier: &BarrierPotential,
         (y, lagged_bodies): (&[f64], &[BodyPlace]),
         (x, bodies): (&[f64], &[BodyPlace]),
-        w: &[f64],
-        scale: f64,
+        (w, scale): (&[f64], f64),
         out: &mut [f64],
     ) {
         let mut places = y.to_vec();

@@ -66,6 +66,7 @@ pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
 pub use surface_points::{SurfacePoints, SurfacePointsError};
 pub(crate) use tangent::LagAt;
+pub use tangent::ReachedPairs;
 pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};

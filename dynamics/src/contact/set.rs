@@ -75,6 +75,14 @@ impl ContactSet {
         self.safe_fraction = if is_finite { safe } else { 0.0 };
     }
 
+    /// Becomes a set of pairs that are within reach at a place; reuses memory.
+    pub(super) fn become_pairs(&mut self, bodies: &BodyMotions, pairs: &[ContactKey]) {
+        self.bodies.copy_from(bodies);
+        self.pairs.clear();
+        self.pairs.extend_from_slice(pairs);
+        self.safe_fraction = 1.0;
+    }
+
     /// The motions of the bodies over the step.
     pub fn bodies(&self) -> &BodyMotions {
         &self.bodies

@@ -1,12 +1,11 @@
 //! The derivatives of contact where a step has ended.
 
 use super::surface_points::CarriedSink;
-use super::term::{ContactTerm, InStep, at_rest};
-use super::{ActiveContact, BarrierPotential, BodyPlace, Contact, CouplingSink};
+use super::term::{ContactTerm, InStep, at_rest, span};
+use super::{ActiveContact, BarrierPotential, BodyPlace, Contact, ContactKey, CouplingSink};
 use super::{DIFFERENCE, SurfacePoints, add_block};
-use crate::StepError;
 use isosheet_materials::hessian::BlockSink;
-use isosheet_model::term::{StartProducts, StepStart, Term};
+use isosheet_model::term::{StartProducts, StepStart};
 use nalgebra::{Matrix3, Vector3};
 
 /// Where friction was lagged for the last time in a step.
@@ -18,42 +17,48 @@ pub(crate) enum LagAt<'a> {
     Places(&'a [f64]),
 }
 
+/// The pairs within reach where friction of a step was lagged, and where the step ends.
+#[derive(Debug, Clone, Default)]
+pub struct ReachedPairs {
+    lag: Vec<ContactKey>,
+    end: Vec<ContactKey>,
+}
+
 impl ContactTerm {
     /// Puts sheet and bodies where a step ends, at positions `x` (`3V`, metres), with friction as it was
-    /// lagged.
+    /// lagged. The pairs within reach are searched for where none are given.
     pub(crate) fn arrive(
         &mut self,
         start: &StepStart<'_>,
         lag: LagAt<'_>,
         x: &[f64],
-    ) -> Result<(), StepError> {
-        self.begin(start)?;
+        pairs: Option<&ReachedPairs>,
+    ) {
         let geometry = self.geometry.as_mut();
-        let step = self.step.as_mut().expect("it has begun");
-        step.lagged_at.clone_from(&step.start);
-        step.lagged_bodies.clear();
-        step.lagged_bodies
-            .extend_from_slice(step.state.active.bodies());
-        if let LagAt::Places(y) = lag {
-            step.go_to_end(geometry, y);
-            self.at(y);
-            let geometry = self.geometry.as_ref();
-            let step = self.step.as_mut().expect("it has begun");
-            let places = step.places().to_vec();
-            let course = step.velocity.course(&step.start);
-            let state = &mut step.state;
-            let (barrier, active) = (&state.barrier, &state.active);
-            state
-                .friction
-                .lag(geometry.laws(), barrier, active, course, &places);
-            step.lagged_bodies.clear();
-            step.lagged_bodies.extend_from_slice(active.bodies());
-            step.lagged_at = places;
+        if self.step.is_none() {
+            self.step = Some(InStep::new(geometry, self.barrier, start));
         }
+        let step = self.step.as_mut().expect("it has just been made");
+        step.place_start(geometry, start);
+        let (progress, y) = match lag {
+            LagAt::Start => (step.bodies.first_progress(), &start.state.x[..]),
+            LagAt::Places(y) => (1.0, y),
+        };
+        step.go_to(geometry, progress, y, pairs.map(|pairs| &pairs.lag[..]));
+        self.at(y);
         let geometry = self.geometry.as_mut();
         let step = self.step.as_mut().expect("it has begun");
-        step.go_to_end(geometry, x);
-        Ok(())
+        step.lag_here(geometry);
+        step.go_to(geometry, 1.0, x, pairs.map(|pairs| &pairs.end[..]));
+    }
+
+    /// The pairs within reach where the step that has arrived was lagged, and where it ends.
+    pub(crate) fn reached_pairs(&self) -> ReachedPairs {
+        let step = self.step.as_ref();
+        step.map_or_else(ReachedPairs::default, |step| ReachedPairs {
+            lag: step.lagged_pairs.clone(),
+            end: step.set.pairs().to_vec(),
+        })
     }
 
     /// Adds the second derivatives of barrier and friction at positions `x` by these, those of
@@ -91,8 +96,7 @@ impl ContactTerm {
             &state.barrier,
             (&step.lagged_at, &step.lagged_bodies),
             (step.places(), state.active.bodies()),
-            &w,
-            scale,
+            (&w, scale),
             &mut of_points,
         );
         hand_on(step.points.as_deref(), &of_points, out);
@@ -121,13 +125,51 @@ impl ContactTerm {
 }
 
 impl InStep {
-    /// Puts bodies at the ends of their motions, and finds the pairs within reach at positions `x`.
-    fn go_to_end(&mut self, geometry: &mut dyn Contact, x: &[f64]) {
-        self.progress = 1.0;
-        let places = SurfacePoints::placed(self.points.as_deref(), x);
-        let motion = at_rest(&self.bodies, 1.0, &places, &self.zeros);
-        self.set.update(geometry, motion);
+    /// Puts the start of slips, and the motions of the bodies, to those of a step.
+    fn place_start(&mut self, geometry: &dyn Contact, start: &StepStart<'_>) {
+        match &self.points {
+            None => self.start.copy_from_slice(&start.state.x),
+            Some(points) => points.place(&start.state.x, &mut self.start),
+        }
+        self.bodies.update(geometry, span(start));
+        let points = self.points.clone();
+        self.velocity
+            .update(geometry.laws(), points.as_deref(), start);
+    }
+
+    /// Puts bodies at a progress of their motions, and takes the pairs within reach at positions `x`.
+    fn go_to(
+        &mut self,
+        geometry: &mut dyn Contact,
+        progress: f64,
+        x: &[f64],
+        pairs: Option<&[ContactKey]>,
+    ) {
+        self.progress = progress;
+        match pairs {
+            Some(pairs) => self.set.become_pairs(&self.bodies, pairs),
+            None => {
+                let places = SurfacePoints::placed(self.points.as_deref(), x);
+                let motion = at_rest(&self.bodies, progress, &places, &self.zeros);
+                self.set.update(geometry, motion);
+            }
+        }
         self.forget();
+    }
+
+    /// Lags friction where the contacts were evaluated.
+    fn lag_here(&mut self, geometry: &dyn Contact) {
+        let places = self.places().to_vec();
+        let course = self.velocity.course(&self.start);
+        let state = &mut self.state;
+        let (barrier, active) = (&state.barrier, &state.active);
+        let laws = geometry.laws();
+        state.friction.lag(laws, barrier, active, course, &places);
+        self.lagged_bodies.clear();
+        self.lagged_bodies.extend_from_slice(active.bodies());
+        self.lagged_pairs.clear();
+        self.lagged_pairs.extend_from_slice(self.set.pairs());
+        self.lagged_at = places;
     }
 }
 

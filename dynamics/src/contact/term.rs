@@ -3,8 +3,8 @@
 use super::course::EndVelocity;
 use super::surface_points::CarriedSink;
 use super::{
-    ActiveContacts, BarrierPotential, BodyMotions, BodyPlace, Contact, ContactError, ContactLaws,
-    ContactSet, ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion,
+    ActiveContacts, BarrierPotential, BodyMotions, BodyPlace, Contact, ContactError, ContactKey,
+    ContactLaws, ContactSet, ContactState, ContactTerms, FrictionError, FrictionLaw, JointMotion,
     LaggedFriction, StepSpan, SurfacePoints, advanced, check_values,
 };
 use crate::{SheetModel, State, StepError};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(crate) struct ContactTerm {
     pub(super) geometry: Box<dyn Contact>,
     /// Its stiffness is set at the start of a run.
-    barrier: BarrierPotential,
+    pub(super) barrier: BarrierPotential,
     points: Option<Arc<SurfacePoints>>,
     /// The motions of the bodies that were asked for last.
     bodies: BodyMotions,
@@ -59,6 +59,7 @@ pub(super) struct InStep {
     /// The points where friction was lagged, and the bodies there, of a step that is differentiated.
     pub(super) lagged_at: Vec<f64>,
     pub(super) lagged_bodies: Vec<BodyPlace>,
+    pub(super) lagged_pairs: Vec<ContactKey>,
 }
 
 impl ContactTerm {
@@ -196,7 +197,11 @@ impl ContactTerm {
 }
 
 impl InStep {
-    fn new(geometry: &mut dyn Contact, barrier: BarrierPotential, start: &StepStart<'_>) -> Self {
+    pub(super) fn new(
+        geometry: &mut dyn Contact,
+        barrier: BarrierPotential,
+        start: &StepStart<'_>,
+    ) -> Self {
         let points = geometry.points().cloned().map(Arc::new);
         let x0 = SurfacePoints::placed(points.as_deref(), &start.state.x).into_owned();
         let bodies = BodyMotions::over(geometry, span(start));
@@ -230,6 +235,7 @@ impl InStep {
             lags: Vec::new(),
             lagged_at: Vec::new(),
             lagged_bodies: Vec::new(),
+            lagged_pairs: Vec::new(),
         }
     }
 
@@ -313,7 +319,7 @@ impl InStep {
     }
 }
 
-fn span(start: &StepStart<'_>) -> StepSpan {
+pub(super) fn span(start: &StepStart<'_>) -> StepSpan {
     StepSpan {
         t0: start.state.t,
         h: start.span,

@@ -160,6 +160,15 @@ impl Objective {
         self.terms().try_for_each(|term| term.begin(step))
     }
 
+    /// As [`Objective::begin`], but for contact.
+    ///
+    /// # Errors
+    /// [`StepError`].
+    pub(crate) fn begin_without_contact(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
+        self.inertia.begin(step)?;
+        self.without_contact().try_for_each(|term| term.begin(step))
+    }
+
     /// The incremental potential in a step of the effective length `h`, seconds.
     pub(crate) fn value(&mut self, at: Iterate<'_>, h: f64) -> IncrementalPotential {
         let inertia = self.inertia.value(at).energy;

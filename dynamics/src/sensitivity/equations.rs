@@ -1,6 +1,6 @@
 //! The equations of an accepted sub-step, and how they depend on what it started from.
 
-use crate::contact::{ContactTerm, LagAt};
+use crate::contact::{ContactTerm, LagAt, ReachedPairs};
 use crate::damped::formula::StepFormula;
 use crate::damped::turning::Turning;
 use crate::objective::Objective;
@@ -72,6 +72,31 @@ impl<'a> StepEquations<'a> {
         lag: FrictionLag<'_>,
         x: &[f64],
     ) -> Result<(), StepError> {
+        self.begin_with(step, lag, x, None)
+    }
+
+    /// As [`StepEquations::begin`], with the pairs of contact of equations that are nearly the same.
+    ///
+    /// # Errors
+    /// As [`StepEquations::begin`].
+    pub fn begin_like(
+        &mut self,
+        step: &AcceptedStep,
+        lag: FrictionLag<'_>,
+        x: &[f64],
+        pairs: &ReachedPairs,
+    ) -> Result<(), StepError> {
+        self.begin_with(step, lag, x, Some(pairs))
+    }
+
+    /// The pairs of contact that were found.
+    pub fn pairs(&self) -> ReachedPairs {
+        let contact: Option<&ContactTerm> = self.objective.get();
+        contact.map_or_else(ReachedPairs::default, ContactTerm::reached_pairs)
+    }
+
+    /// Goes on with equations that were prepared for the same step at the same place.
+    pub fn go_on(&mut self, step: &AcceptedStep) {
         match step.kind {
             StepKind::Motion => {
                 formula(step).place(self.model, &self.turning, &mut self.places);
@@ -84,14 +109,24 @@ impl<'a> StepEquations<'a> {
                 self.model.place_pins(step.start.t + step.span, ahead);
             }
         }
+    }
+
+    fn begin_with(
+        &mut self,
+        step: &AcceptedStep,
+        lag: FrictionLag<'_>,
+        x: &[f64],
+        pairs: Option<&ReachedPairs>,
+    ) -> Result<(), StepError> {
+        self.go_on(step);
         let start = start(step, &self.places);
-        self.objective.begin(&start)?;
+        self.objective.begin_without_contact(&start)?;
         if let Some(contact) = self.objective.get_mut::<ContactTerm>() {
             let lag = match lag {
                 FrictionLag::Start => LagAt::Start,
                 FrictionLag::Places(y) => LagAt::Places(y),
             };
-            contact.arrive(&start, lag, x)?;
+            contact.arrive(&start, lag, x, pairs);
         }
         let at = at(step, x);
         for term in self.objective.without_contact() {

@@ -19,6 +19,7 @@
 //!   [`dynamics::Frames`].
 //! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
 //!   [`dynamics::Simulation::contact_forces`].
+//! - Gradients of runs by what a scene says: [`adjoint::Run`].
 //! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`charts`].
 //! - Meshes and series of frames as files, with the feature `files`: `io::write_mesh`, `io::write_series`.
 //! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run`
@@ -29,6 +30,7 @@
 
 pub mod io;
 
+pub use isosheet_adjoint as adjoint;
 pub use isosheet_attached_flow as attached_flow;
 pub use isosheet_charts as charts;
 pub use isosheet_collide as collide;

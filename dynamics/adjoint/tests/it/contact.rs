@@ -95,9 +95,9 @@ fn a_patch_falls_on_another() {
         let upper = generate::delaunay_square(0.05, 0.017, 4)?;
         let upper = upper.map_positions(|[x, y, _]| [x + 0.021, y + 0.027, 2e-4 + 0.01 * x])?;
         let both = Sheet::union(&[&lower, &upper])?;
-        let held = both.vertices_where(|[x, y, z]| {
-            z == 0.0 && (x < 1e-9 || x > 0.0999) && (y < 1e-9 || y > 0.0999)
-        });
+        let inside = 1e-9..=0.0999;
+        let is_end = |c: f64| !inside.contains(&c);
+        let held = both.vertices_where(|[x, y, z]| z == 0.0 && is_end(x) && is_end(y));
         let model = SheetModel::new(&both, 4e-3, MassKind::Lumped)?
             .with_acceleration([1.0, 0.0, -p[0]])
             .with_pins(&held)?

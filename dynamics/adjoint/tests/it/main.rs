@@ -2,4 +2,6 @@
 
 mod contact;
 mod differences;
+mod inverse;
+mod refusals;
 mod support;
