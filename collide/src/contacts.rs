@@ -49,8 +49,8 @@ const FIRST_PART: f64 = 4.0;
 const NEXT_PART: f64 = 4.0;
 
 /// The geometry of contact of a sheet with bodies and with itself: pairs within reach, distances, and motions
-/// that are checked before they are taken. Barrier and friction are those of
-/// [`isosheet_dynamics::contact`], which says in which order the values are made that a step works with.
+/// that are checked before they are taken. Barrier and friction come from [`isosheet_dynamics::contact`],
+/// which says in which order the values are made that a step works with.
 ///
 /// ```
 /// # use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};

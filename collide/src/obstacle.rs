@@ -63,8 +63,8 @@ impl Obstacle {
         Self::new(shape, RigidProfile::fixed(pose))
     }
 
-    /// A body that rests with the origin of its frame at a place (metres), its axes along those of space. For
-    /// one that is turned or moves by profiles, see [`RigidDisplacement`].
+    /// A body that rests with the origin of its frame at a place (metres), its axes along the axes of space.
+    /// For one that is turned or moves by profiles, see [`RigidDisplacement`].
     ///
     /// # Errors
     /// [`ObstacleError`] naming the length that is not positive, or the coordinate that is not finite.

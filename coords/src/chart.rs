@@ -196,9 +196,9 @@ pub trait Chart: Send {
     /// [`ChartError::Realise`] for a malformed state.
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError>;
 
-    /// A chart of this kind with the reference state x. Coordinate values and rows may differ from those of
-    /// this chart, and for a chart that selects its coordinates the pattern too: build [`Linearised`] and
-    /// what depends on it anew.
+    /// A chart of this kind with the reference state x. Coordinate values and rows may differ from this
+    /// chart, and for a chart that selects its coordinates so may the pattern: build [`Linearised`] and what
+    /// depends on it anew.
     ///
     /// # Errors
     /// As for building the chart at that state.

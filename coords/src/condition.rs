@@ -160,8 +160,8 @@ fn power(
 /// The bent states of [`condition_table`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BentState {
-    /// Flat, with uniform noise of a tenth of the grid spacing out of plane (fixed seed; lengths are
-    /// those of the noisy state).
+    /// Flat, with uniform noise of a tenth of the grid spacing out of plane (fixed seed; lengths are taken
+    /// from the noisy state).
     Noise,
     /// On a cylinder of radius 0.4 of the side, rulings at 27 degrees to the x axis.
     Cylinder,

@@ -314,7 +314,7 @@ impl FrontChart {
     ///
     /// # Errors
     /// [`ChartError::Row`] where a placement has no derivative. Charts with closures are refused with
-    /// [`ChartError::RankDeficient`]: their coordinates are not those of the placements.
+    /// [`ChartError::RankDeficient`]: their coordinates differ from the coordinates of the placements.
     fn chain_jacobian(&self, x: &[f64]) -> Result<DMatrix<f64>, ChartError> {
         check("x", x, 3 * self.system.vertex_count())?;
         if !self.assignment().closures().is_empty() {

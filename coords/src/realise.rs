@@ -262,7 +262,7 @@ impl FrontMap {
         Ok(report)
     }
 
-    /// The position of one vertex, from those of `x` that were placed before it.
+    /// The position of one vertex, from the positions in `x` that were placed before it.
     fn place(
         &self,
         placing: &Placing,

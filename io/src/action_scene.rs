@@ -85,7 +85,7 @@ pub(crate) struct ActionScene {
     pub(crate) time: Option<f64>,
 }
 
-/// A sheet has at least so many faces: those of a coarser mesh are divided.
+/// A sheet has at least so many faces: faces of a coarser mesh are divided.
 const LEAST_FACES: usize = 400;
 
 /// A sheet is flat that is thinner along the normal of its faces than this part of its longest side.

@@ -21,7 +21,7 @@ pub(crate) struct ActionVerdict {
     can_yield: bool,
     /// The height of the highest pinned vertex at the end, metres.
     held: Option<f64>,
-    /// The number of vertices, and of those that touch something.
+    /// The number of vertices, and of vertices that touch something.
     touching: [usize; 2],
     /// The time of the end, seconds.
     t: f64,
@@ -30,8 +30,8 @@ pub(crate) struct ActionVerdict {
     moving: Option<(f64, usize, [f64; 3])>,
 }
 
-/// A sheet that is slower is at rest, m/s.
-const STILL: f64 = 1e-3;
+/// A speed that nobody sees, m/s.
+const SLOW: f64 = 1e-3;
 
 impl ActionVerdict {
     /// Of a complete run; `None` if there is no frame.
@@ -48,8 +48,7 @@ impl ActionVerdict {
                 .sum::<f64>()
         };
         let fastest = (0..end.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
-        let is_at_rest =
-            summary.ending.reason == EndReason::Rest || summary.ending.largest_speed < STILL;
+        let is_at_rest = summary.ending.reason == EndReason::Rest;
         let forces = frames.contact_forces(last).unwrap_or_default();
         let touching = forces.as_chunks::<3>().0.iter().filter(|f| **f != [0.0; 3]);
         let held = recording.pins.iter().map(|v| end[v.index()][2]);
@@ -126,6 +125,9 @@ impl ActionVerdict {
         };
         let moving = match self.moving {
             None => format!("at rest after {:.2} s", self.t),
+            Some((speed, ..)) if speed < SLOW => {
+                format!("slower than {} mm/s after {:.2} s", 1e3 * SLOW, self.t)
+            }
             Some((speed, v, [x, y, z])) => format!(
                 "not at rest after {:.2} s: {:.1} mm/s at most, about vertex {v} at ({x:.3}, {y:.3}, {z:.3}) m",
                 self.t,

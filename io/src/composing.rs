@@ -5,6 +5,7 @@ use super::message::{print_message, print_result};
 use super::progress::event;
 use super::simulate::{How, default_folder, existing};
 use clap::Args;
+use isosheet_drawings::Length;
 use isosheet_dynamics::Material;
 use isosheet_files::{FileError, write_atomically};
 use isosheet_mesh::Advice;
@@ -27,8 +28,8 @@ pub(super) struct Composing {
     /// What the sheet is made of: a name of the page "Materials" of the book [default: see below]
     #[arg(long, value_name = "NAME", value_parser = material)]
     material: Option<String>,
-    /// The longest side of the sheet, metres [default: see below]
-    #[arg(long, value_name = "METRES", value_parser = length, allow_negative_numbers = true)]
+    /// The longest side of the sheet, such as 200mm; metres without a unit [default: see below]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     size: Option<f64>,
     /// Write the scene to a file, which `isosheet simulate` runs again
     #[arg(long, value_name = "FILE")]
@@ -54,12 +55,18 @@ fn folder(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// A length in metres.
+/// A length in metres: with its unit, or in metres if it is shorter than ten. (Whoever writes 200 means
+/// millimetres.)
 pub(super) fn length(text: &str) -> Result<f64, String> {
-    let length: Option<f64> = text.parse().ok();
-    length
-        .filter(|l| (1e-4..=1e3).contains(l))
-        .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
+    let Length { metres } = text.parse()?;
+    let is_bare = text.trim().parse::<f64>().is_ok();
+    match metres {
+        10.0.. if is_bare => Err(format!(
+            "without a unit this is {text} metres: write {text}mm or {text}m"
+        )),
+        1e-4..=1e3 => Ok(metres),
+        _ => Err("give a length from 0.1mm to 1000m, such as 200mm".to_owned()),
+    }
 }
 
 /// The place of a scene for a file that is not written: its paths are relative to that, and no file has its
@@ -107,7 +114,7 @@ impl Composing {
     }
 
     /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be
-    /// written, and a scene file among those of the run.
+    /// written, and a scene file among the files of the run.
     pub(super) fn begin(&self, of: &Path) -> Done {
         let folder = self.folder(of);
         if let Some(scene) = &self.scene {

@@ -12,9 +12,9 @@ use clap::Args;
 use isosheet_drawings::Length;
 use isosheet_films::{FilmOptions, Marks};
 use isosheet_formats::{
-    ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem, MeshFormat,
-    MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened, write_frame,
-    write_mesh, write_series,
+    ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshFileProblem, MeshFormat, MeshOptions,
+    Series, SeriesOptions, Trajectory, read_mesh_with, thickened, write_frame, write_mesh,
+    write_series,
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
@@ -28,7 +28,7 @@ const FORMATS: &str = "\
 Mesh files that are read:
   .obj .off .stl .ply .fold .gltf .glb .vtk .vtp
   .svg .cp .opx           crease patterns
-Mesh files that are written, also of one frame of a run (--frame K):
+Mesh files that are written, also of one frame of a run (--frame K or --frame last):
   .obj .off .ply .fold    all digits; .fold with edges, assignments and fold angles
   .stl .glb .usda         32-bit floats
                           .stl for printers: --thickness 0.8mm --scale 1000
@@ -99,7 +99,7 @@ pub(crate) struct Convert {
     #[arg(long)]
     plain: bool,
     /// Of pictures, colour the sheet by a quantity, such as "fold angle" or "gap", with a scale of colours
-    /// below; an unknown name is answered with those that the run has
+    /// below; an unknown name is answered with the names that the run has
     #[arg(long, visible_alias = "color", value_name = "QUANTITY")]
     colour: Option<String>,
     /// Of pictures with a quantity, the values at both ends of the scale of colours [default: those in all
@@ -140,6 +140,11 @@ impl Convert {
         if self.input.is_dir() {
             return self.convert_run();
         }
+        if !self.input.exists() {
+            let message = format!("there is no {}", self.input.display());
+            let remedy = "name the folder of a run, a trajectory (.npz) or a mesh file";
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
         if self
             .input
             .extension()
@@ -178,7 +183,7 @@ impl Convert {
         self.check_look()?;
         let options = MeshOptions {
             weld: self.weld,
-            frame: self.one.frame.map(FoldFrame::Number),
+            frame: self.one.of_file()?,
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| match e.problem {
@@ -410,20 +415,27 @@ impl Convert {
                 _ => failure,
             }
         })?;
-        let more = match files.len() {
-            1 => String::new(),
-            n => format!(" and {}", counted(n - 1, "more file", "more files")),
+        let is_sequence = files.len() == frames.len() && files.len() > 1;
+        let names = match &files[..] {
+            [first, .., last] if is_sequence => {
+                let last = last.file_name().unwrap_or_default().display();
+                format!("{} to {last}", first.display())
+            }
+            [others @ .., last] if !others.is_empty() => {
+                let more = counted(others.len(), "more file", "more files");
+                format!("{} and {more}", last.display())
+            }
+            _ => last(&files).display().to_string(),
         };
         let chosen = match series.frames().len() {
             all if all > frames.len() => {
-                format!(" of {all} (this format takes {MOST_KEY_FRAMES} at most)")
+                format!(" of {all} (this format takes at most {MOST_KEY_FRAMES})")
             }
             _ => String::new(),
         };
-        let name = last(&files).display();
         let count = counted(frames.len(), "frame", "frames");
         let removed = pictures::removed_in_words(removed);
-        to_stdout(&format!("{name}{more}: {count}{chosen}{removed}\n"))
+        to_stdout(&format!("{names}: {count}{chosen}{removed}\n"))
     }
 
     /// Whether a mesh is to be made larger or thicker.
@@ -482,7 +494,7 @@ impl Convert {
 const FOLDER: &str = "name the folder of the run";
 
 /// What to do where one frame is needed.
-const ONE_FRAME: &str = "choose one, with `--frame K`, `--time T` or `--part P`";
+const ONE_FRAME: &str = "choose one, with `--frame last`, `--frame K`, `--time T` or `--part P`; or write .obj, a folder with a mesh for each frame";
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

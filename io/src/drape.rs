@@ -39,9 +39,9 @@ pub(crate) struct Drape {
     /// A floor below the body, on which the hem may lie
     #[arg(long)]
     floor: bool,
-    /// The longest side of the body, metres [default: it has the unit of the sheet, and metres where that is
-    /// a drawing]
-    #[arg(long, value_name = "METRES", value_parser = length, requires = "on")]
+    /// The longest side of the body, such as 300mm [default: it has the unit of the sheet, and metres where
+    /// that is a drawing]
+    #[arg(long, value_name = "LENGTH", value_parser = length, requires = "on")]
     tool_size: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use isosheet_files::FileError;
 use isosheet_mesh::Advice;
-use isosheet_runs::{RunError, SweepError};
+use isosheet_runs::{FitError, RunError, SweepError};
 use isosheet_scenes::{SceneError, SceneFileError};
 
 /// A class of failures.
@@ -147,6 +147,19 @@ impl From<SweepError> for Failure {
             SweepError::Keys(_) => Code::CommandLine,
             SweepError::OtherSweep { .. } | SweepError::Foreign { .. } => Code::OtherScene,
             SweepError::File(FileError::Write(_)) => Code::Output,
+            _ => Code::Input,
+        };
+        Self::of(code, &error)
+    }
+}
+
+impl From<FitError> for Failure {
+    fn from(error: FitError) -> Self {
+        let code = match error {
+            FitError::Scene(error) => return error.into(),
+            FitError::Keys(_) | FitError::Units { .. } => Code::CommandLine,
+            FitError::Run { .. } | FitError::NoEffect { .. } => Code::Step,
+            FitError::Interrupted => Code::Interrupted,
             _ => Code::Input,
         };
         Self::of(code, &error)

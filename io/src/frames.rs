@@ -41,6 +41,37 @@ impl FromStr for FrameRange {
     }
 }
 
+/// The number of a frame, from 0, or the last one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FrameNumber {
+    Number(usize),
+    Last,
+}
+
+impl FrameNumber {
+    /// Its number among so many frames.
+    pub(crate) fn of(self, count: usize) -> usize {
+        match self {
+            Self::Number(number) => number,
+            Self::Last => count.saturating_sub(1),
+        }
+    }
+}
+
+impl FromStr for FrameNumber {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text.trim() {
+            "last" => Ok(Self::Last),
+            number => match number.parse() {
+                Ok(number) => Ok(Self::Number(number)),
+                Err(_) => Err("give the number of a frame, from 0, or `last`"),
+            },
+        }
+    }
+}
+
 /// The size of pictures, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size {

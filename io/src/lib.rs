@@ -16,6 +16,7 @@ mod drape;
 mod exit;
 mod face_moments;
 mod failure;
+mod fit;
 mod fold;
 mod fold_options;
 mod frames;
@@ -63,6 +64,8 @@ Examples:
   isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
   isosheet sweep cloth.toml --over sheet.density=0.1,0.2
                                                run the scene with both values
+  isosheet fit cloth.toml --rest --vary sheet.density=0.05..0.5 --to tip=-0.1
+                                               find the density with which a measure ends at a value
   isosheet mesh box.svg -o box.fold --spacing 5mm
                                                make a mesh of a drawing, with its creases and cuts
   isosheet unroll cone.obj -o cone.svg         lay a mesh out in the plane, as a pattern to cut
@@ -98,6 +101,8 @@ enum Command {
     Resume(simulate::Resume),
     /// Run a scene with all combinations of some values, on all cores or by GNU parallel, Slurm or Snakemake
     Sweep(sweep::SweepArgs),
+    /// Find values of keys with which the run of a scene ends as is asked for
+    Fit(fit::FitArgs),
     /// Make one table of the summaries of runs and sweeps
     Collect(collect::Collect),
     /// Make the 3D page of a run, complete or not
@@ -153,6 +158,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
         Command::Live(live) => live.run(),
         Command::Resume(resume) => resume.run(),
         Command::Sweep(sweep) => sweep.run(program),
+        Command::Fit(fit) => fit.run(),
         Command::Collect(collect) => collect.run(),
         Command::Page(page) => page.run(),
         Command::Gallery(gallery) => gallery.run(),

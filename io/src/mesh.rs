@@ -27,10 +27,10 @@ Examples:
 
 const LINES: &str = "\
 Which lines are what:
-  layer:NAME        those in a layer or group of this name, or with this name themselves
-  red, #ff8000      those of a colour: black, white, grey, red, yellow, green, cyan, blue, magenta and their
+  layer:NAME        lines in a layer or group of this name, or with this name
+  red, #ff8000      lines of a colour: black, white, grey, red, yellow, green, cyan, blue, magenta and their
                     shades, or exactly the one that is given by its digits
-  dashed, solid     those with dashes and without
+  dashed, solid     lines with dashes and without
 A layer counts before a colour, and that before dashes. What no option names goes by the words in the name of its
 layer (cut, outline, crease, fold, score, perf, mountain, valley, facet, dimension ...), then by its colour: black and
 green are cut, red is a mountain, blue a valley, magenta a crease of either side, yellow stays flat, white is left

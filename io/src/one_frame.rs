@@ -1,17 +1,19 @@
 //! Which frame of a run is meant.
 
 use super::failure::Failure;
+use super::frames::FrameNumber;
 use clap::Args;
-use isosheet_formats::Trajectory;
+use isosheet_formats::{FoldFrame, Trajectory};
 use isosheet_mesh::wording::{brief, given};
 use isosheet_scenes::Folding;
 
 /// The one frame of a run that is written, if one alone is.
 #[derive(Debug, Args)]
 pub(super) struct OneFrame {
-    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
+    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0; of a run
+    /// also `last`)
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
-    pub(super) frame: Option<usize>,
+    pub(super) frame: Option<FrameNumber>,
     /// Of a run, write the frame that is nearest to time T alone, seconds; T is a time of the run
     #[arg(long, value_name = "T", allow_negative_numbers = true, conflicts_with_all = ["frame", "frames", "every", "fps"])]
     time: Option<f64>,
@@ -26,6 +28,18 @@ impl OneFrame {
     pub(super) fn of_run(&self) -> Option<&'static str> {
         let part = self.part.map(|_| "--part");
         self.time.map(|_| "--time").or(part)
+    }
+
+    /// The frame of a FOLD file that is asked for, if one is.
+    pub(super) fn of_file(&self) -> Result<Option<FoldFrame>, Failure> {
+        match self.frame {
+            None => Ok(None),
+            Some(FrameNumber::Number(number)) => Ok(Some(FoldFrame::Number(number))),
+            Some(FrameNumber::Last) => {
+                let message = "--frame last is for runs, and this is a mesh file";
+                Err(Failure::misuse(message).remedy("give the number of a frame, from 0"))
+            }
+        }
     }
 
     /// Whether one frame alone is written.
@@ -64,7 +78,7 @@ impl OneFrame {
                 "--part chooses a frame of a run that folds a crease pattern, and this one folds none that is known".to_owned(),
                 "name the folder of the run, or choose a frame with `--frame K` or `--time T`",
             ),
-            _ => Ok(self.frame),
+            _ => Ok(self.frame.map(|frame| frame.of(trajectory.len()))),
         }
     }
 }

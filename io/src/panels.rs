@@ -91,8 +91,7 @@ pub(super) struct Chosen {
     pub(super) scene: FoldScene,
     /// How far rigid panels close; `None` if they do not reach an end.
     pub(super) rigid: Option<FoldResidual>,
-    /// Other panels whose creases end nearer to their angles, and where, if there are any: those that
-    /// stretch.
+    /// Panels that stretch, whose creases end nearer to their angles, and where they end, if there are any.
     pub(super) nearer: Option<(Panels, FoldTrial)>,
     /// Where the same pattern ends without contact, if panels with contact do not close.
     pub(super) untouched: Option<FoldTrial>,

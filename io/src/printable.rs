@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// A text whose control characters are written as `\u001b`, all but line breaks, tabs and those of `kept`:
-/// names of files and in files may have such that move the cursor, change the title of a terminal or hide
-/// what follows.
+/// A text whose control characters are written as `\u001b`, all but line breaks, tabs and `kept`: names of
+/// files and in files may have such that move the cursor, change the title of a terminal or hide what
+/// follows.
 pub(super) fn printable<'a>(text: &'a str, kept: &[char]) -> Cow<'a, str> {
     let is_plain = |c: char| !controls(c) || ['\n', '\t'].contains(&c) || kept.contains(&c);
     if text.chars().all(is_plain) {

@@ -20,7 +20,7 @@ const EXAMPLES: &str = "\
 Examples:
   isosheet simulate cloth.toml --open                  run a scene in the folder cloth-run, and look at it
   isosheet simulate cloth.toml --force                 run it from the start, after an edit for example
-  isosheet simulate cloth.toml --set contact.friction=0.8 -o rough
+  isosheet simulate cloth.toml --set obstacle[0].friction=0.8 -o rough
                                                        run it with another value, in the folder rough";
 
 /// Run a scene

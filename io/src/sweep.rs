@@ -36,7 +36,7 @@ Examples:
 pub(crate) struct SweepArgs {
     /// The scene file
     scene: PathBuf,
-    /// A key and its values, which are those of TOML, for example `stop.time=0.5,1` or
+    /// A key and its values, which are values of TOML, for example `stop.time=0.5,1` or
     /// `method.integrator=bdf2,implicit_euler`; the last key changes fastest
     #[arg(long = "over", value_name = "KEY=A,B,...", required = true)]
     over: Vec<Variation>,

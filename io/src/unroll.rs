@@ -2,6 +2,7 @@
 
 mod folds;
 mod report;
+mod rulings;
 mod strokes;
 
 use super::failure::{Code, Done, Failure};
@@ -154,7 +155,7 @@ impl Unroll {
         if DrawingFormat::of(&self.out).is_some() {
             let mut lines = Vec::new();
             if !self.no_rulings {
-                lines = strokes::rulings(&sheet, &unrolled, &folds);
+                lines = rulings::rulings(&sheet, &unrolled, &folds);
                 rulings = Some(lines.len());
             }
             lines.extend(strokes::creases(&unrolled.flat, &folds));

@@ -44,8 +44,8 @@ pub(super) fn refuse_file_of_run(out: &Path) -> Done {
     }
 }
 
-/// Refuses to replace a file whose name ends otherwise than those of what is written, such as a scene by a
-/// page.
+/// Refuses to replace a file whose name ends otherwise than the names of what is written, such as a scene by
+/// a page.
 pub(super) fn refuse_other_kind(out: &Path, extensions: &[&str], what: &str) -> Done {
     let has = |e: &OsStr| extensions.iter().any(|known| e.eq_ignore_ascii_case(known));
     if !out.is_file() || out.extension().is_some_and(has) {

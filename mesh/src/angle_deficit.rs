@@ -34,7 +34,7 @@ fn deficits(t: &Topology, sums: &[f64]) -> Vec<f64> {
 
 /// The Gauss curvature that a sheet has besides that of its rest shape.
 ///
-/// Lengths determine angles, so that the deficits of a mesh whose edges keep their lengths stay those of its
+/// Lengths determine angles, so that the deficits of a mesh whose edges keep their lengths stay as in its
 /// rest shape, however it is bent: a flat sheet, and one that is cut as a cone, has none besides. What is
 /// left is the stretching of an elastic sheet, which is how far it is from developable.
 #[derive(Clone, Debug, PartialEq)]

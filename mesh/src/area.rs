@@ -12,8 +12,8 @@
 /// area 0 (`a > b + c`, which rounding can bring about in a thin triangle), and a length that is not a number
 /// gives an area that is not a number.
 ///
-/// Units: the square of that of the lengths, which have to be between 1e-70 and 1e70, as those of a
-/// [`Sheet`](crate::Sheet) are, so that the product of four of them is in the range of `f64`.
+/// Units: the square of the unit of the lengths. Lengths have to be between 1e-70 and 1e70, as in a
+/// [`Sheet`](crate::Sheet), so that the product of four of them is in the range of `f64`.
 ///
 /// ```
 /// assert_eq!(isosheet_mesh::area_from_lengths([3.0, 5.0, 4.0]), 6.0);

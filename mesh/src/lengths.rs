@@ -9,7 +9,7 @@ use std::ops::Range;
 /// `c_e(x) = (|x_a - x_b|^2 - l_e^2) / 2,`
 ///
 /// and the products with the rigidity matrix G = dc/dx (E x 3V). Row e of G holds `x_a - x_b` at the three
-/// columns of a and `-(x_a - x_b)` at those of b.
+/// columns of a and `-(x_a - x_b)` at the columns of b.
 ///
 /// Because c is quadratic, `c(y) - c(x) = G((x + y)/2) (y - x)` holds exactly.
 ///

@@ -54,7 +54,7 @@ impl Part {
     /// A vertex of the union in the sheet.
     ///
     /// # Panics
-    /// If it is before those of the part.
+    /// If it is before the first of the part.
     pub fn local_vertex(&self, v: VertexId) -> VertexId {
         VertexId::from_index(v.index() - self.vertices.start)
     }

@@ -255,7 +255,7 @@ impl Topology {
     /// The boundary as closed loops of vertices with the surface on the left, each starting at its lowest
     /// vertex.
     ///
-    /// The outer boundary of a flat sheet is counter-clockwise, those of its holes clockwise.
+    /// The outer boundary of a flat sheet is counter-clockwise, the boundaries of its holes clockwise.
     pub fn boundary_loops(&self) -> Vec<Vec<VertexId>> {
         let mut seen = vec![false; self.vertex_count()];
         let mut loops = Vec::new();

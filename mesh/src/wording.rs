@@ -23,8 +23,9 @@ impl fmt::Display for Given {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(value) = *self;
         match value.abs() {
+            0.0 => f.write_str("0"),
             // Five digits before the point and two zeros behind it are read at a glance.
-            size if size == 0.0 || !size.is_finite() || (1e-3..1e5).contains(&size) => {
+            size if !size.is_finite() || (1e-3..1e5).contains(&size) => {
                 write!(f, "{value}")
             }
             _ => write!(f, "{value:e}"),
@@ -88,6 +89,7 @@ mod tests {
     fn numbers_are_short_and_keep_three_digits() {
         for (value, text) in [
             (0.0, "0"),
+            (-0.0, "0"),
             (-1.0, "-1"),
             (1.0 / 60.0, "0.0167"),
             (12_345.678, "12300"),

@@ -126,7 +126,7 @@ fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
     for _ in 0..60 {
         let report = simulation.step(STEP).expect("accepted");
         let new = momentum(&simulation);
-        // The reactions are those of the last sub-step, and a damped step that is repeated has dropped its
+        // The reactions belong to the last sub-step, and a damped step that is repeated has dropped its
         // history.
         if report.rejected > 0 {
             older = None;
@@ -197,8 +197,8 @@ fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
         for method in damped_to(tolerance) {
             for supports in two_sided().into_iter().chain(one_sided()) {
                 // A sheet that falls on its ledge buckles: with the semidefinite part of the Hessian the
-                // iteration converges linearly, and what a last iteration leaves adds up with those that
-                // would follow.
+                // iteration converges linearly, and what a last iteration leaves adds up with what later ones
+                // would leave.
                 let bound = if supports.ledge {
                     exact / (1.0 - 0.9)
                 } else {

@@ -125,7 +125,7 @@ fn falling(is_elastic: bool, friction: f64, method: Method) -> Simulation {
         .and_then(|c| c.with_body(ball, mu))
         .and_then(|c| c.with_self_contact(mu))
         .expect("valid");
-    // Forces are those of whole steps.
+    // Forces belong to whole steps.
     let control = StepControl {
         min_fraction: 1.0,
         ..StepControl::default()

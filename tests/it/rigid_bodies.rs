@@ -93,7 +93,7 @@ impl Scene {
                 .with_potential(PotentialOfPart::new(plate, &parts[0]))
                 .with_elastic_sheet(elastic)
                 .expect("its faces");
-            assert_eq!(model.rods().len(), 6, "the rods are those of the block");
+            assert_eq!(model.rods().len(), 6, "the rods of the block");
         }
         let corners = block.surface.positions().as_chunks::<3>().0.iter();
         let carried = corners.map(|p| block.body.carried(*p, VertexId::from_index(first)));

@@ -121,8 +121,8 @@ fn inner(shape: &Shape) -> Shape {
     }
 }
 
-/// Smallest distance of the faces of `a` from the vertices of `b` and of the edges of `a` from those
-/// of `b`, metres.
+/// Smallest distance of the faces of `a` from the vertices of `b` and of the edges of `a` from the edges of
+/// `b`, metres.
 fn skeleton_distance(a: &ContactMesh, x: &[f64], b: &ContactMesh, y: &[f64]) -> f64 {
     let at = |x: &[f64], v: u32| {
         let i = 3 * v as usize;

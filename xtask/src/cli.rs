@@ -74,12 +74,12 @@ pub(crate) enum Command {
     /// Copy what the reports have measured into the book and the README, or list what is out of date
     ///
     /// Each report writes DIR/measured.md, unless it is quick. This command puts the parts of these files
-    /// into those of docs/measured and fills the marked blocks of README.md and of the pages of the book.
+    /// into the parts of docs/measured and fills the marked blocks of README.md and of the pages of the book.
     Measured(MeasuredArgs),
     /// Make the pictures of the README: eighteen scenes that anybody can run, and a film of one of them
     ///
     /// Writes DIR/gallery.png and DIR/film.png (an animated PNG) and keeps the runs in DIR/runs. The scenes
-    /// are those of `isosheet new` and of `xtask/scenes`.
+    /// come from `isosheet new` and `xtask/scenes`.
     Gallery(GalleryArgs),
     /// Search with new seeds for cases in which a random test fails
     ///

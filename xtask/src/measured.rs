@@ -208,7 +208,7 @@ mod tests {
         assert!(error.to_string().contains("no part called third"));
     }
 
-    /// The numbers of the README and of the book are those that the reports wrote, and stand in the text.
+    /// The README and the book have the numbers that the reports wrote, and the numbers stand in the text.
     #[test]
     fn pages_have_what_was_measured() {
         let mut blocks = 0;

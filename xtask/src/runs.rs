@@ -1,4 +1,4 @@
-//! Runs: their course, and those that figures are made of, made once and recorded in DIR/runs.
+//! Runs: their course, and the runs of which figures are made, made once and recorded in DIR/runs.
 
 mod bumped;
 mod chart_run;

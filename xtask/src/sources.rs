@@ -1,5 +1,5 @@
-//! The sources that the numbers of a report depend on, those of the solver and of the report, and which of
-//! them have changed since a commit.
+//! The sources that the numbers of a report depend on, of the solver and of the report, and which of them
+//! have changed since a commit.
 //!
 //! Lines of comments do not count, nor do files of tests and pages of text: those may change without making a
 //! number out of date. Versions of dependencies and of the compiler are not part of it.

@@ -377,7 +377,7 @@ mod tests {
         assert!(store.stamp(&unit(2)).is_none(), "made again next time");
     }
 
-    /// Results of another build are not shown beside those of this one.
+    /// Results of another build are not shown beside the results of this one.
     #[test]
     fn results_of_another_build_are_left_out_by_name() {
         let folder = tempfile::tempdir().unwrap();

@@ -35,11 +35,10 @@ impl Bounds {
 
 /// A dynamic bounding-volume hierarchy of a mesh in motion.
 ///
-/// The tree is over the faces (and free edges and vertices); it is built once and refitted to new
-/// positions by [`BroadPhase::update`]. After the first few calls nothing is allocated unless there
-/// are more pairs than ever before. The boxes are those of the whole straight motion from one set of
-/// positions to another; a pair that comes within twice the inflation of each other at any time
-/// between is reported, and each pair once.
+/// The tree is over the faces (and free edges and vertices); it is built once and refitted to new positions
+/// by [`BroadPhase::update`]. After the first few calls nothing is allocated unless there are more pairs than
+/// ever before. The boxes enclose the whole straight motion from one set of positions to another; a pair that
+/// comes within twice the inflation of each other at any time between is reported, and each pair once.
 #[derive(Clone)]
 pub struct BroadPhase {
     mesh: ContactMesh,
@@ -94,8 +93,8 @@ impl BroadPhase {
     }
 
     /// Refits the tree to the motion from `x0` to `x1` (`3V`, metres), every box enlarged by `inflation`
-    /// (metres) on all sides, and those of round bodies by their radius. For pairs within a distance `d` give
-    /// both meshes `d / 2`, or one of them `d`.
+    /// (metres) on all sides, and boxes of round bodies also by their radius. For pairs within a distance `d`
+    /// give both meshes `d / 2`, or one of them `d`.
     ///
     /// # Panics
     /// If the lengths of `x0` and `x1` are not three times the number of vertices.
@@ -214,9 +213,9 @@ impl BroadPhase {
         });
     }
 
-    /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the
-    /// face, of those that are not joined. Both ends of the edge are further than `depth` (metres) from the
-    /// plane of the face: with 0 every crossing counts, and with more not those of faces that lie on each
+    /// An edge and a face of the mesh that are not joined, where the edge passes through the face at the
+    /// positions `x` (`3V`) of the last update. Both ends of the edge are further than `depth` (metres) from
+    /// the plane of the face. With 0 every crossing counts. A larger depth leaves out faces that lie on each
     /// other up to round-off.
     pub fn self_crossing(&mut self, x: &[f64], depth: f64) -> Option<[u32; 2]> {
         let mut pairs = Vec::new();

@@ -44,7 +44,7 @@ impl Candidates {
     /// at least, the mesh keeps the separation from itself on that part of it.
     ///
     /// # Panics
-    /// If the pairs are not those of the mesh, or the lists of the motion are too short.
+    /// If the pairs are of another mesh, or the lists of the motion are too short.
     pub fn safe_part(&self, options: &CcdOptions, motion: MeshMotion<'_>) -> f64 {
         let mesh = motion.mesh;
         let vertex_face = self.vertex_face.iter().map(|&pair| mesh.vertex_face(pair));
@@ -65,8 +65,7 @@ impl Candidates {
     /// metres; infinite if there are none, and not a number if a coordinate is not.
     ///
     /// # Panics
-    /// If the pairs are not those of the mesh, or the length of `x` is not three times its number of
-    /// vertices.
+    /// If the pairs are of another mesh, or the length of `x` is not three times its number of vertices.
     pub fn smallest_distance(&self, mesh: &ContactMesh, x: &[f64]) -> f64 {
         let radii = |[first, .., last]: [u32; 4]| mesh.radius(first) + mesh.radius(last);
         let faces = self.vertex_face.iter().map(|&pair| {
@@ -120,7 +119,7 @@ impl CrossCandidates {
     /// at least, both meshes together, the meshes keep it on that part of them.
     ///
     /// # Panics
-    /// If the pairs are not those of the meshes, or the lists of the motions are too short.
+    /// If the pairs are of other meshes, or the lists of the motions are too short.
     pub fn safe_part(
         &self,
         options: &CcdOptions,

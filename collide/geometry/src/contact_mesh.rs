@@ -273,9 +273,9 @@ impl ContactMesh {
         self
     }
 
-    /// Puts a round body in the place of vertices with all that they are corners of, which take no part any
-    /// more. It has new vertices, which come after all others and of which those that are marked take part as
-    /// they are, and new edges, by their numbers among the new vertices; an edge may have both ends in one
+    /// Puts a round body in the place of vertices and of all edges and faces at them, which take no part any
+    /// more. The body has new vertices, which come after all others; the marked ones take part as vertices.
+    /// It also has new edges, by their numbers among the new vertices; an edge may have both ends in one
     /// place. Its surface is `radius` (metres) about these. It belongs to a [part](Self::with_parts), by its
     /// number, if there are any.
     ///
@@ -410,7 +410,7 @@ impl ContactMesh {
         [v, a, b, c]
     }
 
-    /// The vertices of the pair of two edges, those of the first one first.
+    /// The vertices of a pair of two edges, the first edge first.
     #[inline]
     pub fn edge_edge(&self, [e, g]: [u32; 2]) -> [u32; 4] {
         let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[g as usize]);

@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 
 impl ContactBody {
     /// Appends the pairs within reach on the motion of the sheet and the given part of the body's, and
-    /// shortens the part of it that brings nothing into contact. `neighbours` are those of the motion; `near`
-    /// is room.
+    /// shortens the part of it that brings nothing into contact. `neighbours` belong to the motion; `near` is
+    /// room.
     pub(super) fn query(
         &self,
         sheet: SheetMotion<'_>,

@@ -26,7 +26,7 @@ pub(super) struct Features {
     end: Vec<f64>,
     /// What the boxes are enlarged by, metres.
     inflation: f64,
-    /// Where, and with what inflation, the boxes are those of a body that does not move.
+    /// The place and the inflation for which the boxes of a body at rest were made.
     resting: Option<(Isometry3<f64>, f64)>,
     /// Where, and with what inflation, the tree of the boxes is that of a body that does not move.
     resting_tree: Option<(Isometry3<f64>, f64)>,
@@ -104,8 +104,8 @@ impl Features {
         }))
     }
 
-    /// Sets the boxes to those of a motion, for pairs with a sheet within `reach`, metres; those of a resting
-    /// body stay.
+    /// Sets the boxes for a motion, for pairs with a sheet within `reach`, metres; boxes of a resting body
+    /// stay.
     pub(super) fn place(&mut self, part: &RigidPath, reach: f64) {
         // Half of the reach, the radius, and the bulge of the paths of a turning body.
         let inflation = 0.5 * reach + self.radius + part.sagitta(self.extent);
@@ -130,7 +130,7 @@ impl Features {
         &self.displacements
     }
 
-    /// How much more the boxes are enlarged than those of the motion that lists were made for, metres.
+    /// How much more the boxes are enlarged than the boxes of the motion that lists were made for, metres.
     pub(super) fn growth(&self) -> f64 {
         (self.inflation - self.listed_inflation).max(0.0)
     }

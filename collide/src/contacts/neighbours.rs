@@ -104,7 +104,7 @@ impl Neighbours {
         self.edge_edge.below(self.far)
     }
 
-    /// Pairs of the sheet with a body; more than those whose boxes overlap.
+    /// Pairs of the sheet with a body. The list also has pairs whose boxes do not overlap.
     pub(super) fn with_body(&self, body: usize) -> &CrossCandidates {
         &self.cross[body]
     }
@@ -116,8 +116,8 @@ impl Neighbours {
         &mut self.boxes
     }
 
-    /// Sets the boxes of sheet and bodies to those of a motion, and makes the lists anew if the motion needs
-    /// that. `parts` are the motions of the bodies.
+    /// Sets the boxes of sheet and bodies for a motion, and makes the lists anew if the motion needs that.
+    /// `parts` are the motions of the bodies.
     pub(super) fn update(
         &mut self,
         sheet: SheetMotion<'_>,

@@ -27,8 +27,8 @@ pub(super) fn face_gradients(corners: [Vector3<f64>; 3], weights: [f64; 3]) -> [
 }
 
 /// Gradient of the weight of the second end of the edge `first` at its point closest to the edge `second`,
-/// given the weights of the four ends (those of the second edge are not positive): the closest point of the
-/// second edge moves too, unless it is an end. Zero if the closest point of the first edge is an end.
+/// given the weights of the four ends (the weights of the second edge are not positive): the closest point of
+/// the second edge moves too, unless it is an end. Zero if the closest point of the first edge is an end.
 pub(super) fn edge_gradient(
     first: [Vector3<f64>; 2],
     second: [Vector3<f64>; 2],

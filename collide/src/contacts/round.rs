@@ -16,7 +16,7 @@ pub struct RoundBody {
     pub radius: f64,
 }
 
-/// The points of a round body in the place of those of a polyhedron.
+/// The points of a round body in place of the points of a polyhedron.
 #[derive(Debug, Clone, PartialEq)]
 struct InPlace {
     /// The points of the polyhedron.
@@ -122,7 +122,7 @@ impl Rounds {
         self.0.iter().any(|round| round.replaced.contains(&point))
     }
 
-    /// A range of points, and those of the round bodies that are in the place of some of them.
+    /// A range of points, and the points of round bodies that replace some of them.
     pub(super) fn with_those_in(&self, range: &Range<usize>) -> Vec<Range<usize>> {
         let is_inside =
             |r: &&InPlace| range.start <= r.replaced.start && r.replaced.end <= range.end;

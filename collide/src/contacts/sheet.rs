@@ -17,7 +17,7 @@ fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
 }
 
 /// Appends the pairs of the sheet with itself within reach on a motion and shortens the part of it that
-/// brings nothing into contact. `neighbours` are those of the motion; `near` is room.
+/// brings nothing into contact. `neighbours` belong to the motion; `near` is room.
 pub(super) fn query(
     sheet: SheetMotion<'_>,
     neighbours: &Neighbours,

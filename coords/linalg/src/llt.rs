@@ -112,8 +112,8 @@ impl SparseLlt {
         self.factor.len()
     }
 
-    /// Numeric factorisation of the current values. Those of more than 2e7 multiplications are shared among
-    /// the threads of rayon's current pool, with the same bits for any number of threads.
+    /// Numeric factorisation of the current values. Factorisations of more than 2e7 multiplications are
+    /// shared among the threads of rayon's current pool, with the same bits for any number of threads.
     ///
     /// # Errors
     /// [`LinalgError::NotPositiveDefinite`] if a pivot is not positive.
@@ -187,7 +187,7 @@ mod tests {
     }
 
     /// Gives the matrix other values and factorises it: `diagonal` on the diagonal, and beside it couplings
-    /// around -1 that differ from each other and from those of other diagonals.
+    /// around -1 that differ from each other and between diagonals.
     fn refactorise(llt: &mut SparseLlt, diagonal: f64) -> Result<(), LinalgError> {
         let pattern = llt.pattern().clone();
         for c in 0..pattern.cols() {

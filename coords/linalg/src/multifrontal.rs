@@ -49,7 +49,7 @@ impl Multifrontal {
         })
     }
 
-    /// Multiplications of a factorisation, those of square roots and divisions left out.
+    /// Multiplications of a factorisation, without square roots and divisions.
     pub(super) fn operations(&self) -> f64 {
         self.plan.operations
     }

@@ -31,7 +31,7 @@ pub struct Work {
 
 impl Work {
     /// Whether it takes less time on several threads than on one, and this is one of the threads of a pool.
-    /// (Any other thread would sleep until those of the pool are done, and have to be woken, too.)
+    /// (Any other thread would sleep until the threads of the pool are done, and have to be woken, too.)
     pub fn is_shared(self) -> bool {
         let time = self.count as f64 * self.each;
         time >= WORTH_SHARING_AWAKE

@@ -93,7 +93,7 @@ struct MinimumCut<'a> {
     used: Vec<bool>,
     /// From where it comes; `NONE` is the source.
     previous: Vec<u32>,
-    /// Breadth-first level of each node, `UNREACHED` also for those that a blocking flow has done with.
+    /// Breadth-first level of each node; `UNREACHED` also for a node that a blocking flow has done with.
     level: Vec<u32>,
     /// Next neighbour to try from each leaving node.
     tried: Vec<u32>,

@@ -136,7 +136,7 @@ mod tests {
     proptest! {
         #![proptest_config(isosheet_random::cases(256))]
 
-        /// The distance is the least of those of points on a fine grid of the two segments, within its
+        /// The distance is the least distance of points on a fine grid of the two segments, within its
         /// spacing.
         #[test]
         fn distances_of_segments(c in prop::collection::vec(-1.0..1.0f64, 12)) {

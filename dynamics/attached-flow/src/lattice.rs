@@ -37,15 +37,15 @@ pub(super) struct Trailing {
     pub(super) points: [usize; 2],
 }
 
-/// A vortex ring for each of some faces, whose corners are those of the face but at the boundary: there they
-/// are a quarter of a face inside, but for trailing edges. (See [`INSET`].)
+/// A vortex ring for each of some faces, with the corners of the face. At the boundary, except at trailing
+/// edges, corners are a quarter of a face inside. (See [`INSET`].)
 #[derive(Debug, Clone)]
 pub(super) struct Lattice {
     /// The vertices of the sheet that the nodes move with.
     pub(super) vertices: Vec<VertexId>,
     nodes: Vec<Node>,
-    /// Nodes at the corners of rings that end outside of the boundary at trailing edges, and elsewhere where
-    /// those of `nodes` are: their means are the centres of faces.
+    /// Nodes at the corners of rings that end outside of the boundary at trailing edges, and elsewhere at
+    /// `nodes`: their means are the centres of faces.
     probes: Vec<Node>,
     /// Nodes of the corners.
     pub(super) faces: Vec<[usize; 3]>,
@@ -205,12 +205,12 @@ impl Lattice {
         of_vertices
     }
 
-    /// The vertices that a node moves with, by their numbers among those of the lattice, and their weights.
+    /// The vertices that a node moves with, by their numbers in the lattice, and their weights.
     pub(super) fn weights(&self, node: usize) -> &[(usize, f64)] {
         &self.nodes[node].0
     }
 
-    /// The vertices that a probe moves with, by their numbers among those of the lattice, and their weights.
+    /// The vertices that a probe moves with, by their numbers in the lattice, and their weights.
     pub(super) fn probe_weights(&self, node: usize) -> &[(usize, f64)] {
         &self.probes[node].0
     }

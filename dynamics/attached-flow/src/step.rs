@@ -10,11 +10,11 @@ use isosheet_materials::vectors::{add, dot, largest_norm};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Part of the largest force by which forces may differ from those of the flow at the end of the step before
-/// they are renewed.
+/// Part of the largest force by which forces may differ from the flow at the end of the step before they are
+/// renewed.
 const SETTLED: f64 = 1e-3;
-/// Part of the largest force by which forces may differ from those of the flow at the end of a step; beyond
-/// it the step is refused.
+/// Part of the largest force by which forces may differ from the flow at the end of a step; beyond it the
+/// step is refused.
 const UNSETTLED: f64 = 0.05;
 
 impl Force for Attached {
@@ -269,8 +269,8 @@ impl FlowStep {
         Ok(())
     }
 
-    /// By how much the forces at an iterate are not those of the flow, as a part of the largest: to first
-    /// order, and where that has settled whole.
+    /// By how much the forces at an iterate differ from the flow, as a part of the largest: to first order,
+    /// and where that has settled whole.
     fn error(&self, x: &[f64], settled: f64) -> f64 {
         let here = self.own(x);
         let forces = self.lagged.forces(&here);

@@ -22,8 +22,8 @@ pub const REBASED: &str = "rebased";
 
 /// A simulation of `model` from `state` in system coordinates.
 ///
-/// Velocities are projected onto those that keep the lengths. Supports that the chart does not eliminate
-/// are closure equations, see [`ChartSimulation::from_state`].
+/// Velocities are projected onto the motions that keep the lengths. Supports that the chart does not
+/// eliminate are closure equations, see [`ChartSimulation::from_state`].
 ///
 /// # Errors
 /// [`SimulationError`] if options or state are invalid, or the chart is singular or too ill-conditioned

@@ -43,8 +43,8 @@ pub struct CreaseSpring {
 }
 
 impl CreaseSpring {
-    /// Makes springs those of creases in a sheet with bending stiffness, in place: a crease replaces what
-    /// resists bending at its edge.
+    /// Turns springs into creases in a sheet with bending stiffness, in place: a crease replaces what resists
+    /// bending at its edge.
     ///
     /// The dihedral angle of the two faces at an edge is the fold of the crease and the bend of the sheet
     /// over these faces, `theta = theta_c + M / k_s`, with the stiffness `k_s = D l_e^2 / A_e` of the sheet
@@ -179,9 +179,9 @@ impl Advice for CreaseError {
 /// assignment of mountains and valleys chooses the branch, no perturbation is needed.
 ///
 /// The work of driving a rest angle, the integral of `dV/dt` at fixed positions, enters the energy balance.
-/// The derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds
-/// and wrinkles* (2003), Eq. 3, the second ones those of Tamstorf and Grinspun, *Discrete bending forces and
-/// their Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
+/// The derivatives of the angle are from Bridson, Marino and Fedkiw, *Simulation of clothing with folds and
+/// wrinkles* (2003), Eq. 3, the second ones from Tamstorf and Grinspun, *Discrete bending forces and their
+/// Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
 /// [`Remembering::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in
@@ -469,7 +469,7 @@ impl Hinge {
         self.yields.map_or(0, |yields| yields.layers)
     }
 
-    /// The plastic angle, the mean of those of its layers.
+    /// The plastic angle, the mean over its layers.
     fn plastic(&self, layers: &[f64]) -> f64 {
         self.yields.map_or(0.0, |y| y.plastic::<1>(layers)[0])
     }

@@ -104,7 +104,7 @@ use swelling::Swelling;
 /// its range is that of a norm `|z|_nu` with `nu = C12 / (C11 C22)^(1/2)`, and the strain `z` to which it is
 /// pulled out minimises the energy of spring and slack, `min_z (e - z) : C (e - z) / 2 + psi(|z|_nu)`.
 ///
-/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work.
+/// `S_T` and `r` are taken at the start of a step. What their change does to the energy is counted as work.
 /// Slack that grows lets energy of its face go; where it closes it takes up as much at most, and stays open
 /// by as much as that does not pay for. So slack never drives a motion; a face that was bent may keep some
 /// slack until it is unloaded. (The curvature of patches in the membrane strain, within the step, is that of
@@ -283,8 +283,8 @@ impl ElasticSheet {
         union
     }
 
-    /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those
-    /// that are elastic.
+    /// Makes this the elasticity of a sheet in a union of several. `first` is the number of its first face
+    /// among the elastic ones.
     fn place(&mut self, part: &Part, first: usize) {
         let faces = std::mem::take(&mut self.faces).into_iter();
         self.faces = faces.map(|face| face.in_union(part)).collect();

@@ -104,7 +104,7 @@ impl Material {
     ///
     /// # Errors
     /// [`OptionsError`] naming the number that makes no sense, of the material or of the sheet
-    /// ([`Material::validate`]). The ranges are far beyond those of all materials.
+    /// ([`Material::validate`]). The ranges are far wider than for any material.
     pub fn isotropic(material: Isotropic) -> Result<Self, OptionsError> {
         OptionsError::check_range("youngs", material.youngs, 1.0, 1e15)?;
         OptionsError::check_range("thickness", material.thickness, 1e-12, 1e12)?;
@@ -136,7 +136,7 @@ impl Material {
         }
     }
 
-    /// Checks the numbers. The ranges are far beyond those of all sheets; a strain limit has to be below 0.5,
+    /// Checks the numbers. The ranges are far wider than for any sheet; a strain limit has to be below 0.5,
     /// the compression of an edge to nothing.
     ///
     /// # Errors

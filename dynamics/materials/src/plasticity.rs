@@ -201,7 +201,7 @@ impl Yield {
         Self { layers, ..self }
     }
 
-    /// Checks the numbers; the ranges are far beyond those of all sheets.
+    /// Checks the numbers; the ranges are far wider than for any sheet.
     ///
     /// # Errors
     /// [`OptionsError`] naming the number that makes no sense.
@@ -227,8 +227,7 @@ impl Yield {
         })
     }
 
-    /// The plastic part of a section, the mean of those of its layers, which are `N` numbers in `layers`
-    /// each.
+    /// The plastic part of a section, the mean over its layers, which are `N` numbers in `layers` each.
     pub(super) fn plastic<const N: usize>(&self, layers: &[f64]) -> SVector<f64, N> {
         let mut mean = Mean::NONE;
         for (layer, p) in self.of_section(1.0).zip(layers.as_chunks::<N>().0) {

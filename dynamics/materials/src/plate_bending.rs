@@ -250,8 +250,8 @@ impl PlateBending {
     }
 
     /// The plate of `sheet` at rest in the positions of the sheet, curved as they are, in place of flat:
-    /// without stress there, and with the energy of what it is bent beyond. (Of second derivatives along the
-    /// faces, which no bend makes, those of the rest positions are left out.)
+    /// without stress there, and with the energy of what it is bent beyond. (Second derivatives along the
+    /// faces, which no bend makes, are left out for the rest positions.)
     #[must_use]
     pub fn curved(mut self, sheet: &Sheet) -> Self {
         let natural = Arc::make_mut(&mut self.stencils).straighten(sheet, &self.roots);
@@ -278,7 +278,7 @@ impl PlateBending {
 
     /// The plate of `sheet` with the natural curvature that it has in another shape, with positions `shape`
     /// (`3V`, metres) of its vertices, times a profile of time; in place of the one that it had. Lengths stay
-    /// those of the sheet.
+    /// as in the sheet.
     ///
     /// # Errors
     /// [`PlateBendingError::Curl`].

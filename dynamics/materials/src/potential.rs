@@ -437,8 +437,8 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
 /// How stiff the couplings of vertices without a common edge are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CouplingKind {
-    /// Such as those of bending: a matrix may be factorised without them, where that is cheaper, and they are
-    /// taken into account by conjugate gradients.
+    /// Such as the couplings of bending: a matrix may be factorised without them, where that is cheaper, and
+    /// they are taken into account by conjugate gradients.
     Soft,
     /// So stiff that conjugate gradients would not converge without them.
     Stiff,

@@ -29,9 +29,9 @@ pub type CarriedPoint = [(VertexId, f64); 4];
 /// thinner in one direction than in another is taken for a thicker one there, so that its tetrahedron is not
 /// flat.
 ///
-/// * Without more the corners are those of a regular tetrahedron with `|u|^2 = 3`. Then the matrix is that of
-///   four equal masses (equimomental systems: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics
-///   of a System of Rigid Bodies*, 1882, Ch. I), unless the body is thin.
+/// * Without more the corners are the corners of a regular tetrahedron with `|u|^2 = 3`. Then the matrix is
+///   that of four equal masses (equimomental systems: E. J. Routh, *The Elementary Part of a Treatise on the
+///   Dynamics of a System of Rigid Bodies*, 1882, Ch. I), unless the body is thin.
 /// * [`RigidBody::with_corner`] puts the first corner at a point, where a ball joint can hold it.
 /// * [`RigidBody::with_edge`] puts the first two on a line, where a hinge or a slider can hold them.
 ///
@@ -79,7 +79,7 @@ pub enum RigidBodyError {
         /// Its coordinates.
         value: [f64; 3],
     },
-    /// The second moments are not those of a body with a volume.
+    /// No body with a volume has the second moments.
     #[error(
         "the least second moment of a rigid body is {least} kg m2, the largest {largest} kg m2",
         least = given(*least), largest = given(*largest)

@@ -427,8 +427,8 @@ pub struct Exchange {
     pub stored: f64,
     /// Energy that the tolerance of the lengths leaves open.
     pub length_slack: f64,
-    /// Work by which forces that were expected of the end of the step differ from those that are there, where
-    /// they are too stiff to be expected; not negative.
+    /// Work of the difference between the forces that were expected at the end of the step and the forces
+    /// there, where they are too stiff to be expected; not negative.
     pub misjudged: f64,
 }
 

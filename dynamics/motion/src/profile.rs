@@ -83,7 +83,7 @@ pub enum Interpolation {
     #[default]
     Linear,
     /// Cubic polynomials with a continuous rate (C1) that are monotone wherever the keyframes are, so that no
-    /// value lies beyond those of the two keyframes beside it; the acceleration jumps at keyframes.
+    /// value lies beyond the values of the two keyframes beside it; the acceleration jumps at keyframes.
     ///
     /// The slope at a keyframe is the weighted harmonic mean of the slopes `d` of the two chords beside it,
     /// `(w_1 + w_2) / (w_1 / d_1 + w_2 / d_2)` with `w_1 = 2 h_2 + h_1`, `w_2 = h_2 + 2 h_1` for the

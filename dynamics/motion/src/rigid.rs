@@ -226,8 +226,8 @@ impl RigidProfile {
         }
     }
 
-    /// Pose, velocities and accelerations at time `t` (seconds), exactly; where one of them jumps those of
-    /// the motion that begins there.
+    /// Pose, velocities and accelerations at time `t` (seconds), exactly; where one of them jumps, its value
+    /// in the motion that begins there.
     pub fn kinematics(&self, t: f64) -> Kinematics {
         match self {
             Self::Displacement(displacement) => displacement.kinematics(t),
@@ -371,9 +371,9 @@ impl RigidMotion {
         }
     }
 
-    /// Pose, velocities and accelerations at time `t` (seconds): those of the profile, or by five-point
-    /// differences of the function with spacings of a hundredth (velocities) and a tenth (accelerations) of
-    /// `span` (seconds, the step for instance).
+    /// Pose, velocities and accelerations at time `t` (seconds): of the profile, or by five-point differences
+    /// of the function with spacings of a hundredth (velocities) and a tenth (accelerations) of `span`
+    /// (seconds, the step for instance).
     pub fn kinematics(&self, t: f64, span: f64) -> Kinematics {
         let at = match self {
             Self::Profile(profile) => return profile.kinematics(t),

@@ -55,7 +55,7 @@ impl Newton {
         })
     }
 
-    /// The first guess of the impulses: those of the step before, times a factor.
+    /// The first guess of the impulses: the impulses of the step before, times a factor.
     pub(super) fn begin(
         &mut self,
         model: &SheetModel,

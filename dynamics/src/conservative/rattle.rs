@@ -123,8 +123,8 @@ impl Rattle {
         }
         model.apply_mass(&self.difference, &mut self.newton.momentum);
         let mass = &model.mass().vertex;
-        // The speed sets the scale, not the impulses: those of nearly dependent rods can be as
-        // large as they are wrong.
+        // The speed sets the scale, not the impulses: impulses of nearly dependent rods can be as large as
+        // they are wrong.
         let mut scale = 0.0_f64;
         for i in 0..self.newton.u.len() {
             let change = self.newton.momentum[i].abs() / mass[i / 3];

@@ -358,7 +358,7 @@ impl ActiveContacts {
         Self::at(contact, &set, 1.0, x)
     }
 
-    /// Becomes those of a set at other positions; reuses memory.
+    /// Becomes the contacts of a set at other positions; reuses memory.
     #[doc(hidden)]
     pub fn update(&mut self, contact: &dyn Contact, set: &ContactSet, s: f64, x: &[f64]) {
         self.span = set.bodies().span();
@@ -436,7 +436,7 @@ impl ActiveContacts {
         }
     }
 
-    /// Adds `scale` times the forces that a displacement `dx` asks for beyond those of the Hessian, newtons:
+    /// Adds `scale` times the forces that a displacement `dx` asks for beyond the Hessian, newtons:
     /// `-phi''(g) q dg/dx` for every contact whose gap `g` closes by `q = g(x + dx) - g(x) - dg/dx dx < 0`
     /// more than to first order; whether there are any. `ahead` are the contacts at `x + dx`.
     pub(crate) fn add_gap_correction(

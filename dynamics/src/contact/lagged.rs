@@ -177,8 +177,8 @@ impl Sliding<'_> {
 
 /// Friction of a step with constant normals and normal forces: the potential `D(x - x0)`.
 ///
-/// It belongs to a step, also after its end: the loads on the bodies ([`super::ContactTerms::loads`]) are
-/// those of the last step. The step after lags it anew.
+/// It belongs to a step, also after its end: the loads on the bodies ([`super::ContactTerms::loads`]) belong
+/// to the last step. The step after lags it anew.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct LaggedFriction {
     /// Positions at the start of the step, `3V`, metres; empty without contacts.
@@ -272,8 +272,8 @@ impl LaggedFriction {
         known.unwrap_or(self.others.len()) as u32
     }
 
-    /// Takes the laws that a checkpoint does not have from those of the scene; whether they are such that the
-    /// contacts name the same ones.
+    /// Takes the laws that a checkpoint does not have from the scene; whether they are such that the contacts
+    /// name the same ones.
     pub(crate) fn take_laws(&mut self, laws: &ContactLaws) -> bool {
         let mut others: Vec<Arc<dyn FrictionLaw>> = Vec::new();
         for contact in &self.contacts {

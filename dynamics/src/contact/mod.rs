@@ -171,7 +171,7 @@ pub trait Contact: Send + Sync {
     fn laws(&self) -> &ContactLaws;
 
     /// The points that contact acts between, where these are not the vertices of the model; positions and
-    /// displacements, and the numbers of vertices in contacts, are those of the points then.
+    /// displacements, and the numbers of vertices in contacts, then refer to the points.
     fn points(&self) -> Option<&SurfacePoints> {
         None
     }

@@ -46,7 +46,7 @@ impl ParallelEdges {
         (2.0 - self.y) * self.y
     }
 
-    /// `J^T z` for the derivative `J` of `u x v` by the four points, the ends of `u` and those of `v`.
+    /// `J^T z` for the derivative `J` of `u x v` by the four points, the ends of `u` and the ends of `v`.
     pub(super) fn pull_back(&self, z: &Vector3<f64>) -> [Vector3<f64>; 4] {
         let (du, dv) = (self.v.cross(z), z.cross(&self.u));
         [-du, du, -dv, dv]

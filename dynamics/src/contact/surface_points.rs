@@ -8,8 +8,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The points of the surface on which contact acts, `X_p = sum_k b_pk x_k` with the vertices `x_k` of a
-/// model: first vertices themselves, by their numbers, then points that vertices carry, such as those of the
-/// surface of a rigid body by the four of its [tetrahedron](crate::RigidBody).
+/// model: first vertices themselves, by their numbers, then points that vertices carry, such as points of the
+/// surface of a rigid body by the four vertices of its [tetrahedron](crate::RigidBody).
 ///
 /// With the constant matrix `B` of the weights forces on the vertices are `B^T` times those on the points,
 /// and second derivatives `B^T H B`; straight motions of the vertices are straight motions of the points, so
@@ -99,7 +99,7 @@ impl SurfacePoints {
         })
     }
 
-    /// With more carried points, after those that are there.
+    /// With more carried points, after the present ones.
     ///
     /// # Errors
     /// [`SurfacePointsError`].
@@ -116,7 +116,7 @@ impl SurfacePoints {
         self.own + self.carried.len()
     }
 
-    /// Number of points that are vertices, before those that are carried.
+    /// Number of points that are vertices; the carried points come after them.
     pub fn own(&self) -> usize {
         self.own
     }
@@ -126,8 +126,7 @@ impl SurfacePoints {
         self.model_vertices
     }
 
-    /// Sets `out` to the positions or displacements of the points that belong to those of the vertices
-    /// (`3V`).
+    /// Sets `out` to the positions or displacements of the points, given the vertices (`3V`).
     pub fn place(&self, x: &[f64], out: &mut Vec<f64>) {
         out.clear();
         out.extend_from_slice(&x[..3 * self.own]);
@@ -140,8 +139,8 @@ impl SurfacePoints {
         }
     }
 
-    /// Positions or displacements of the points, by those of the vertices (`3V`), where the points are not
-    /// the vertices themselves.
+    /// Positions or displacements of the points, given the vertices (`3V`), where the points are not the
+    /// vertices themselves.
     pub fn placed<'a>(points: Option<&Self>, x: &'a [f64]) -> Cow<'a, [f64]> {
         match points {
             None => Cow::Borrowed(x),
@@ -200,7 +199,7 @@ impl SurfacePoints {
         weights
     }
 
-    /// Replaces the pairs of points from `start` on by those of the vertices that carry them.
+    /// Replaces the pairs of points from `start` on by pairs of the vertices that carry them.
     pub(super) fn carry_couplings(&self, pairs: &mut Vec<[u32; 2]>, start: usize) {
         let of_points = pairs.split_off(start);
         for [p, q] in of_points {
@@ -225,7 +224,7 @@ fn used(carriers: &CarriedPoint) -> impl Iterator<Item = (VertexId, f64)> {
 const GATHERED: usize = 8;
 
 /// Receives blocks of points, and hands them on to the vertices that carry these. The blocks of contacts one
-/// after the other that the same few vertices carry, as those of two bodies, are gathered and handed on once.
+/// after the other that the same few vertices carry, as between two bodies, are gathered and handed on once.
 pub(super) struct CarriedSink<'a> {
     points: &'a SurfacePoints,
     sink: &'a mut dyn CouplingSink,
@@ -262,7 +261,7 @@ impl<'a> CarriedSink<'a> {
         *self.blocks[a][b].get_or_insert_with(Matrix3::zeros) += block;
     }
 
-    /// The place of a vertex among those that are gathered.
+    /// The place of a vertex among the gathered ones.
     fn place(&mut self, vertex: u32) -> usize {
         let found = self.vertices.iter().position(|v| *v == vertex);
         found.unwrap_or_else(|| {
@@ -372,8 +371,8 @@ mod tests {
         assert!((of_vertices.0 - &expected).norm() < 1e-13 * expected.norm());
     }
 
-    /// Blocks of more bodies than are gathered at a time, some of them twice, are those that are handed on
-    /// one by one.
+    /// Blocks of more bodies than are gathered at a time, some of them twice, are equal to the blocks that
+    /// are handed on one by one.
     #[test]
     fn gathered_blocks_are_all_handed_on() {
         let body = |first: u32| std::array::from_fn(|k| (VertexId(first + k as u32), 0.25));

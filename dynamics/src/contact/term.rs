@@ -453,7 +453,7 @@ impl Term for ContactTerm {
         }
     }
 
-    /// By the motions of the bodies, and by those of pins, such as the vertices of meshes in motion.
+    /// By the motions of the bodies and of pins, such as the vertices of meshes in motion.
     fn add_drive(&mut self, at: Iterate<'_>, product: &mut HessianProduct<'_>) {
         let step = self.at(at.x);
         let scale = product.scale;

@@ -277,6 +277,13 @@ impl Integrator for Equilibrium {
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (start, model) = (attempt.state, scene.model);
+        // Here, before the search takes its time; and where it ends, as such a force may act there alone.
+        let resting = State {
+            t: start.t + attempt.h,
+            v: vec![0.0; start.v.len()],
+            ..start.clone()
+        };
+        check_forces(model, &resting)?;
         let first = first_step(model, &attempt);
         let mut lengths = Lengths {
             span: attempt.h,
@@ -431,8 +438,8 @@ fn check_held(start: &State, reached: &State) -> Result<(), StepError> {
     })
 }
 
-/// Refuses forces that depend on velocities and act at rest too, such as those of wind: they have no term in
-/// the search.
+/// Refuses forces that depend on velocities and act at rest too, such as wind: they have no term in the
+/// search.
 fn check_forces(model: &SheetModel, state: &State) -> Result<(), StepError> {
     let mut forces = vec![0.0; state.x.len()];
     for force in model.implicit_forces() {

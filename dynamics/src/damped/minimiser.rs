@@ -244,7 +244,7 @@ impl Minimiser {
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the tolerance of
     /// the lengths and round-off allow. (Where multipliers were solved for no allowance is made for the
-    /// lengths: at rest they are those of round-off, and to correct round-off in the lengths of a nearly flat
+    /// lengths: at rest they are due to round-off, and to correct round-off in the lengths of a nearly flat
     /// sheet would set it in motion.)
     fn is_below(
         &mut self,

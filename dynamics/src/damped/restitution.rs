@@ -205,7 +205,7 @@ impl FormulaStep<'_> {
         let first = of(first)?;
         let second = match key.body {
             Some(number) => Partner::Obstacle(number),
-            // Those of the other one come last.
+            // Points of the other one come last.
             None => of(last)?,
         };
         let is_body = |part: &Partner| matches!(part, Partner::Body(_));
@@ -234,8 +234,8 @@ impl FormulaStep<'_> {
         v0 + 0.5 * (before + after)
     }
 
-    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole ones of the barrier,
-    /// and those that friction has given.
+    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole impulses of the
+    /// barrier, and the impulses of friction so far.
     fn pushed<'a>(
         &'a self,
         meeting: &'a Meeting,

@@ -30,8 +30,8 @@ use rand_chacha::ChaCha8Rng;
 /// shortens them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
 /// convergence is linear instead of quadratic.
 ///
-/// Where there are barriers their Hessian joins the mass matrix, so that the nearest positions are those that
-/// press least on them, and nothing is passed through on the way.
+/// Where there are barriers their Hessian joins the mass matrix. So the nearest positions press least on the
+/// barriers, and nothing is passed through on the way.
 pub(crate) struct Restoration {
     tuning: Tuning,
     axial: Vec<f64>,
@@ -364,7 +364,7 @@ impl Restoration {
     }
 
     /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions
-    /// `x`. The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    /// `x`. The rods have the directions at the positions `rods_at`, or at `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,

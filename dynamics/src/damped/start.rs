@@ -98,7 +98,7 @@ pub fn leave_flat(
     leave_flat_in(model, all, x, amplitude, seed)
 }
 
-/// [`leave_flat`] for the vertices of a range alone, those of one of several sheets
+/// [`leave_flat`] for the vertices of a range alone, of one of several sheets
 /// ([`Part::vertices`](isosheet_mesh::Part::vertices)).
 ///
 /// # Errors

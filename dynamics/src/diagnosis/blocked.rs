@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    /// The rods around each interior vertex of a flat sheet depend on each other, those of a folded one do
+    /// The rods around each interior vertex of a flat sheet depend on each other; in a folded sheet they do
     /// not.
     #[test]
     fn rods_of_flat_parts_are_dependent() {

@@ -21,11 +21,11 @@ use isosheet_model::Infeasibility;
 ///   + sum_c q min(0, g_c)^2 / 2                         contacts with bodies, with the gaps g_c
 /// ```
 ///
-/// are minimised by Newton's method from the state; the gaps are those of the contacts at the state,
-/// linearised. Where the minimum is not zero its forces are in equilibrium at all free vertices: by Farkas'
-/// lemma for the linearised lengths and gaps no small motion meets them. Twice the energy is the sum of force
-/// times violation, so that the part `2 E / W` of the motions is too much, where `W` is the work of the
-/// forces of all that moves over its motion.
+/// are minimised by Newton's method from the state; the gaps belong to the contacts at the state, linearised.
+/// Where the minimum is not zero its forces are in equilibrium at all free vertices: by Farkas' lemma for the
+/// linearised lengths and gaps no small motion meets them. Twice the energy is the sum of force times
+/// violation, so that the part `2 E / W` of the motions is too much, where `W` is the work of the forces of
+/// all that moves over its motion.
 pub(crate) fn infeasibility(
     model: &SheetModel,
     contact: Option<(&mut ContactTerm, &ContactState)>,

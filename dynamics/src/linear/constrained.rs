@@ -85,8 +85,8 @@ impl RowValues {
 /// the least squares of `r - A y` (Engl, Hanke and Neubauer, "Regularization of Inverse Problems", 1996, Sec.
 /// 5.1).
 ///
-/// Where `K` is factorised without its far couplings, the iterations are those of that matrix, which differs
-/// from `K` across the rods alone.
+/// Where `K` is factorised without its far couplings, the iterations use that matrix, which differs from `K`
+/// across the rods alone.
 #[derive(Debug)]
 pub(crate) struct ConstrainedSolver {
     /// `r - A y`.
@@ -153,9 +153,8 @@ impl ConstrainedSolver {
         self.residual.add(-1.0, &self.image);
     }
 
-    /// Improves multipliers and `y` by conjugate gradients. `y` and the residual are those of the
-    /// multipliers; `y` becomes stationary with the multipliers. Returns the residual that is left, as a
-    /// strain.
+    /// Improves multipliers and `y` by conjugate gradients. `y` and the residual belong to the multipliers;
+    /// `y` becomes stationary with the multipliers. Returns the residual that is left, as a strain.
     pub(crate) fn improve(
         &mut self,
         system: &mut ConstrainedSystem<'_>,

@@ -1,4 +1,4 @@
-//! The equations of all vertex constraints of a model, beside those of the rods.
+//! The equations of all vertex constraints of a model, beside the rods.
 
 use isosheet_materials::hessian::{HessianPart, HessianSink};
 use isosheet_materials::vectors::{add, point};

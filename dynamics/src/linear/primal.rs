@@ -353,7 +353,7 @@ impl PrimalMatrix {
     /// # Errors
     /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive
     /// definite. (Without far couplings some matrices that are not positive definite are factorised;
-    /// [`PrimalMatrix::solve_whole`] finds those that matter.)
+    /// [`PrimalMatrix::solve_whole`] finds the ones that matter.)
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         if self.far.are_zero() {
             self.factorize_near(Factorised::Near)

@@ -21,7 +21,7 @@ pub(super) struct Inertia {
 
 /// The connected parts of a model that nothing holds.
 struct Falling {
-    /// Of each connected part its mass, kilograms; nothing of those that a support holds.
+    /// The mass of each connected part, kilograms; `None` if a support holds the part.
     masses: Vec<Option<f64>>,
     /// The way that its weight alone takes it in the step, metres.
     ways: Vec<Vector3<f64>>,

@@ -27,8 +27,8 @@ pub(crate) use isosheet_materials::hessian::HessianPart;
 /// Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x),
 /// ```
 ///
-/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the
-/// model, and contact where a scene names it.
+/// the inertia, the potentials with the explicit forces, and further terms: implicit forces of the model, and
+/// contact where a scene names it.
 pub(crate) struct Objective {
     inertia: Inertia,
     /// Potentials and explicit forces.
@@ -75,7 +75,7 @@ impl Objective {
         }
     }
 
-    /// Adds a term before those of implicit forces, or puts it in the place of the one of its type.
+    /// Adds a term before the implicit forces, or puts it in the place of the one of its type.
     pub(crate) fn set<T: Term>(&mut self, term: T) {
         self.others.retain(|other| !is::<T>(&**other));
         self.others.insert(0, Box::new(term));

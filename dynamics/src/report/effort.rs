@@ -11,9 +11,9 @@ use std::ops::ControlFlow;
 pub struct StepProgress {
     /// End of the accepted sub-steps, seconds.
     pub t: f64,
-    /// Newton iterations, with those of rejected sub-steps.
+    /// Newton iterations, rejected sub-steps included.
     pub iterations: usize,
-    /// Matrix factorisations, with those of rejected sub-steps.
+    /// Matrix factorisations, rejected sub-steps included.
     pub factorisations: usize,
 }
 
@@ -23,7 +23,7 @@ pub(crate) type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
 /// Receives the events of a trace.
 pub(crate) type TraceSink = dyn FnMut(&TraceEvent) + Send;
 
-/// Counters of a step, with those of rejected sub-steps.
+/// Counters of a step, rejected sub-steps included.
 #[derive(Default)]
 pub(crate) struct SolverEffort<'w> {
     /// Newton iterations.

@@ -32,9 +32,9 @@ pub struct StepReport {
     pub substeps: usize,
     /// Rejected sub-steps.
     pub rejected: usize,
-    /// Newton iterations, with those of rejected sub-steps.
+    /// Newton iterations, rejected sub-steps included.
     pub iterations: usize,
-    /// Matrix factorisations, with those of rejected sub-steps.
+    /// Matrix factorisations, rejected sub-steps included.
     pub factorisations: usize,
     /// Largest relative residual over the sub-steps: for conservative methods the largest unbalanced
     /// acceleration over the largest acceleration; for BDF2 and implicit Euler the Newton decrement before

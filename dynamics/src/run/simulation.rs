@@ -74,8 +74,8 @@ pub(super) enum Moved {
 impl Simulation {
     /// A chart-free simulation of `model` from `state`.
     ///
-    /// Velocities of pinned vertices are set to those of their motion. Vertices on a straight line of rods
-    /// between two pins at rest become pins, see [`Simulation::immobile_vertices`].
+    /// Velocities of pinned vertices are set to their motion. Vertices on a straight line of rods between two
+    /// pins at rest become pins, see [`Simulation::immobile_vertices`].
     ///
     /// # Errors
     /// [`SimulationError`] if options or state are invalid, or the state does not have the rest lengths to
@@ -100,7 +100,7 @@ impl Simulation {
     /// two.
     ///
     /// # Errors
-    /// [`SimulationError`] if the state is invalid, and those of `build`.
+    /// [`SimulationError`] if the state is invalid, and the errors of `build`.
     pub fn with_engine(
         model: SheetModel,
         state: State,
@@ -179,8 +179,8 @@ impl Simulation {
     /// [kept](Engine::kept).
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or engine; those of
-    /// `build`.
+    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or engine; the
+    /// errors of `build`.
     pub fn resume_with_engine(
         model: SheetModel,
         checkpoint: Checkpoint,
@@ -472,10 +472,10 @@ impl Simulation {
     /// | RATTLE | start of the sub-step, in compositions of the last part |
     ///
     /// Zero before the first step, after a [`Fallback`](crate::Fallback), and between vertices that cannot
-    /// move. Forces of dependent rods, as in a flat sheet, are not unique: BDF2 and implicit Euler give those
-    /// of least squares with the same loads on the free vertices, without loads across folds flatter than 0.3
-    /// degrees, at the cost of one factorisation. (Where that fails, as with bodies whose masses differ by
-    /// more than arithmetic can take, they give one of the sets of forces with these loads.)
+    /// move. Forces of dependent rods, as in a flat sheet, are not unique: BDF2 and implicit Euler give the
+    /// forces of least squares with the same loads on the free vertices, without loads across folds flatter
+    /// than 0.3 degrees, at the cost of one factorisation. (Where that fails, as with bodies whose masses
+    /// differ by more than arithmetic can take, they give one of the sets of forces with these loads.)
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Moved::ByMethod(engine) => engine.rod_forces(),

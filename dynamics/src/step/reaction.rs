@@ -123,7 +123,7 @@ impl Balance {
         true
     }
 
-    /// Sets the forces at all vertices to those that `add` adds to zero; false if there are no supports.
+    /// Sets the forces at all vertices to zero and lets `add` add to them; false if there are no supports.
     pub(crate) fn begin_with(&mut self, add: impl FnOnce(&mut [f64])) -> bool {
         if self.pins.is_empty() {
             return false;
@@ -343,7 +343,7 @@ impl Balance {
     }
 
     /// Work of moving pins and vertex constraints in a step from `x0` at `t0` to `x1` at `t1`, joules: with
-    /// mean forces or, for forces at the end, by the trapezoidal rule with those of the step before.
+    /// mean forces or, for forces at the end, by the trapezoidal rule with the forces of the step before.
     pub fn drive_work(
         &self,
         model: &SheetModel,

@@ -66,7 +66,7 @@ fn a_hand_on_its_way_goes_on_after_a_checkpoint() {
     assert_eq!(resumed.hand_target(CORNER), Ok(to));
 }
 
-/// Between two steps hands come and go, and potentials with them; those that stay go on where they are.
+/// Between two steps hands come and go, and potentials with them; a hand that stays goes on where it is.
 #[test]
 fn hands_come_and_go_between_steps() {
     let sheet = sheet();

@@ -56,9 +56,9 @@ fn ran(model: SheetModel, steps: usize) -> (Simulation, StepReport) {
     (run, report.unwrap())
 }
 
-/// Energy, forces, stiffness (by forces of second order), strains and safe parts are those of a sheet that is
-/// made with these lengths. The energy of an area is `E h e^2 / 2` of smaller strains `e` there, and of a
-/// larger area.
+/// Energy, forces, stiffness (by forces of second order), strains and safe parts equal a sheet that is made
+/// with these lengths. The energy of an area is `E h e^2 / 2` of smaller strains `e` there, and of a larger
+/// area.
 #[test]
 fn a_swollen_sheet_is_one_with_longer_edges() {
     let sheet = strip();

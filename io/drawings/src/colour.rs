@@ -6,8 +6,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Colour(pub [u8; 3]);
 
-/// Hues in degrees around those of the colours that have a name. Drawing programs write many reds; cyan and
-/// magenta are colours of screens and, besides, those of inks.
+/// Hues in degrees around the named colours. Drawing programs write many reds; cyan and magenta are colours
+/// of screens and also of inks.
 const HUES: [(&str, f64); 8] = [
     ("red", 0.0),
     ("yellow", 60.0),

@@ -139,7 +139,7 @@ struct Reader<'a, 'input> {
     steps: Allowance,
 }
 
-/// What an element takes over from those that it is in.
+/// What an element takes over from the elements around it.
 #[derive(Clone)]
 struct State {
     matrix: Matrix,

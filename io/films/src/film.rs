@@ -149,7 +149,7 @@ impl<'a> Film<'a> {
     ///
     /// # Errors
     /// [`PictureError::Data`] without frames or for a frame that the run has not, [`PictureError::Options`]
-    /// for pictures that memory does not hold, and those of [`FilmOptions::validate`].
+    /// for pictures that memory does not hold, and the errors of [`FilmOptions::validate`].
     pub fn new(
         recording: &'a Recording,
         frames: Vec<usize>,

@@ -156,7 +156,7 @@ fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, Gallery
     Ok(folders)
 }
 
-/// Adds the folders of runs at and beneath a folder, and those that cannot be read.
+/// Adds the folders of runs at and beneath a folder, and the folders that cannot be read.
 fn search(folder: &Path, found: &mut Vec<PathBuf>, left_out: &mut Vec<(PathBuf, String)>) {
     match find(folder, found) {
         Ok(folders) => folders

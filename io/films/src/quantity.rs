@@ -8,8 +8,8 @@ use isosheet_runs::Recording;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-/// The share of values that differ by orders of magnitude, those that are zero apart, that is inside the
-/// range of colours; as in pages.
+/// The share of values inside the range of colours, where values differ by orders of magnitude. Zeros are
+/// apart. Pages have this share, too.
 const IN_RANGE: f64 = 0.98;
 
 /// Creases whose value differs from zero by no more than this part of the range of colours show nothing; as
@@ -29,7 +29,7 @@ impl Quantity {
     /// another range.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for a name that no quantity has, with those that there are, and for a range
+    /// [`PictureError::Options`] for a name that no quantity has, with the names that exist, and for a range
     /// that makes no sense.
     pub(super) fn of(
         recording: &Recording,

@@ -1,6 +1,7 @@
 //! Where the viewer of a film is.
 
 use isosheet_collide::Obstacle;
+use isosheet_mesh::{Topology, VertexId};
 use isosheet_runs::Recording;
 use nalgebra::{Point3, Vector3};
 
@@ -37,6 +38,10 @@ const VIEWPOINTS: [[f64; 2]; 16] = [
 /// The part of the sheet that bodies may hide from a viewpoint.
 const HIDDEN: f64 = 0.5;
 
+/// A sheet is seen on its edge from where its area is less than this part of the largest one: a level sheet
+/// from 25 degrees above the horizon has 0.49 of its area from 60 degrees.
+const ON_EDGE: f64 = 1.0 / 3.0;
+
 /// Vertices that are looked at in a frame, about.
 const SAMPLES: usize = 150;
 
@@ -44,8 +49,8 @@ const SAMPLES: usize = 150;
 const NEAR: f64 = 5e-3;
 
 impl Viewpoint {
-    /// The first viewpoint from which bodies hide no more than half of the sheet in some frames, seen from a
-    /// distance in metres; without one that from which they hide least.
+    /// The first viewpoint from which the sheet is not seen on its edge, and bodies hide no more than half of
+    /// it, in some frames, seen from a distance in metres; without one that from which most is seen.
     pub(super) fn of_sight(
         recording: &Recording,
         frames: &[usize],
@@ -54,13 +59,12 @@ impl Viewpoint {
     ) -> Self {
         let looked_at = [0, frames.len() / 2, frames.len() - 1].map(|k| frames[k]);
         let trajectory = &recording.trajectory;
+        let points_of = |frame: usize| {
+            let x = trajectory.frame(frame).unwrap_or_default();
+            x.as_chunks::<3>().0
+        };
         let points = looked_at.iter().flat_map(|&frame| {
-            let points = trajectory
-                .frame(frame)
-                .unwrap_or_default()
-                .as_chunks::<3>()
-                .0;
-            let t = trajectory.times()[frame];
+            let (points, t) = (points_of(frame), trajectory.times()[frame]);
             points
                 .iter()
                 .step_by(points.len() / SAMPLES + 1)
@@ -75,15 +79,27 @@ impl Viewpoint {
             };
             points.iter().filter(is_hidden).count() as f64 / points.len().max(1) as f64
         };
-        let mut best = (Self::default(), f64::INFINITY);
-        for [azimuth, elevation] in VIEWPOINTS {
-            let view = Self { azimuth, elevation };
-            let part = hidden(&view);
-            if part <= HIDDEN {
+        let views = VIEWPOINTS.map(|[azimuth, elevation]| Self { azimuth, elevation });
+        // Of each frame the areas from all viewpoints, as parts of the largest one.
+        let areas = looked_at.map(|frame| {
+            let normals = normals(recording.sheet.topology(), points_of(frame));
+            let areas = views.map(|view| {
+                let toward = view.direction();
+                normals.iter().map(|n| n.dot(&toward).abs()).sum::<f64>()
+            });
+            let largest = areas.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+            areas.map(|area| area / largest)
+        });
+        let mut best = (Self::default(), f64::NEG_INFINITY);
+        for (k, view) in views.into_iter().enumerate() {
+            let area = areas.iter().map(|areas| areas[k]).sum::<f64>() / areas.len() as f64;
+            let hidden = hidden(&view);
+            if hidden <= HIDDEN && area >= ON_EDGE {
                 return view;
             }
-            if part < best.1 {
-                best = (view, part);
+            let seen = (1.0 - hidden) * area;
+            if seen > best.1 {
+                best = (view, seen);
             }
         }
         best.0
@@ -103,6 +119,19 @@ impl Default for Viewpoint {
         let [azimuth, elevation] = VIEWPOINTS[0];
         Self { azimuth, elevation }
     }
+}
+
+/// The vector areas of faces, twice.
+fn normals(topology: &Topology, points: &[[f64; 3]]) -> Vec<Vector3<f64>> {
+    let normal = |face: &[VertexId; 3]| {
+        let [a, b, c] = face.map(|v| Vector3::from(points[v.index()]));
+        (b - a).cross(&(c - a))
+    };
+    let faces = topology.faces().iter();
+    faces
+        .filter(|face| face.iter().all(|v| v.index() < points.len()))
+        .map(normal)
+        .collect()
 }
 
 /// Whether a body is between a point and a viewer at a distance in some direction. A body that the point is

@@ -202,9 +202,9 @@ pub fn write_frame(path: &Path, series: &Series<'_>, frame: usize) -> Result<(),
     }
 }
 
-/// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each
-/// file is written atomically, the one of that name last. Of numbered files those that an earlier export by
-/// the same name has left are removed when all new ones are complete, and no others.
+/// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each file
+/// is written atomically, the one of that name last. Numbered files that an earlier export by this name has
+/// left are removed when all new ones are complete. No other files are removed.
 ///
 /// # Errors
 /// [`ExportError`]; other files of a format with several files may have been written then.

@@ -9,13 +9,13 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadKind {
-    /// A support; force and torque are those of the support on the sheet.
+    /// A support, with force and torque of the support on the sheet.
     Support,
-    /// An obstacle; force and torque are those of the sheet on the obstacle.
+    /// An obstacle, with force and torque of the sheet on the obstacle.
     Obstacle,
-    /// A body that responds; force and torque are those of all that touches it.
+    /// A body that responds, with force and torque of all that touches it.
     Body,
-    /// The guide of a body; force and torque are those of the guide on the body.
+    /// The guide of a body, with force and torque of the guide on the body.
     Guide,
 }
 

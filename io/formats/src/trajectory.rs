@@ -274,7 +274,7 @@ impl Trajectory {
     }
 
     /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without
-    /// frames, and of a time that is beyond those of the frames by more than a frame lasts.
+    /// frames, and for a time that is beyond the frames by more than a frame lasts.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let (first, last) = (self.t.first()?, self.t.last()?);
         let frame = (last - first) / (self.t.len().max(2) - 1) as f64;
@@ -282,7 +282,7 @@ impl Trajectory {
         nearest.filter(|_| (first - frame..=last + frame).contains(&time))
     }
 
-    /// The last frame of those whose time makes a value the smallest.
+    /// The frame whose time makes a value the smallest; of several such frames the last.
     pub fn with_least(&self, value: impl Fn(f64) -> f64) -> Option<usize> {
         let values = self.t.iter().map(|t| value(*t)).enumerate().rev();
         let least = values.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -456,7 +456,7 @@ impl Trajectory {
         }
     }
 
-    /// What a motion has, if its frames are those of a trajectory.
+    /// What a motion has, if its frames come from a trajectory.
     fn contents<M: MotionFrames>(
         &self,
         motion: &M,

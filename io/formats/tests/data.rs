@@ -177,7 +177,7 @@ fn planar_files_are_sheets() {
 }
 /// What is expected of a file: refused with a problem of that name, or read with so many vertices, triangles
 /// and polygons that were cut. What was read is a sheet with that Euler characteristic, or is no sheet for
-/// that reason. Vertices, faces and characteristics are those that another program counted in the files.
+/// that reason. Another program counted vertices, faces and characteristics in the files.
 enum Expected {
     Refused(&'static str),
     Read(usize, usize, usize, Surface),

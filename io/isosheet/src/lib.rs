@@ -25,8 +25,8 @@
 //! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run`
 //!   and `io::command`.
 //!
-//! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take
-//! arrays; its version is re-exported as [`nalgebra`].
+//! All numbers are in SI units. Beside functions of arrays there are functions of vectors of `nalgebra`; its
+//! version is re-exported as [`nalgebra`].
 
 pub mod io;
 

@@ -22,7 +22,7 @@ impl KeptFrames {
         (0..self.frames).filter(move |&frame| self.has(frame))
     }
 
-    /// Shows those of a motion, in their order, until `show` breaks.
+    /// Shows the frames of a motion, in their order, until `show` breaks.
     pub(super) fn each<M: MotionFrames>(
         self,
         motion: &M,
@@ -34,7 +34,7 @@ impl KeptFrames {
         })
     }
 
-    /// Shows those of a motion, in their order, until `show` fails.
+    /// Shows the frames of a motion, in their order, until `show` fails.
     pub(super) fn try_each<M: MotionFrames<Error: From<DataError>>>(
         self,
         motion: &M,

@@ -58,7 +58,8 @@ pub(super) struct FieldScale {
     scale: Scale,
     /// The largest size of a value.
     largest: f64,
-    /// The range of the values, of their logarithms, or of those of the sizes that are not negligible.
+    /// The range of the values, of their logarithms, or of the logarithms of the sizes that are not
+    /// negligible.
     range: Range,
 }
 
@@ -71,7 +72,7 @@ impl FieldScale {
         }
     }
 
-    /// Takes note of the sizes of some values, all of which come before those of [`Self::observe`].
+    /// Takes note of the sizes of some values, before any value goes to [`Self::observe`].
     pub(super) fn observe_sizes(&mut self, values: &[f64]) {
         let sizes = values.iter().map(|v| v.abs());
         self.largest = sizes.fold(self.largest, f64::max);

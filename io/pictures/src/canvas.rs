@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(data, [225, 225, 225, 255, 255, 255]);
     }
 
-    /// Values from the table are those of the formula, also at both sides of each step.
+    /// Values from the table agree with the formula, also at both sides of each step.
     #[test]
     fn the_table_is_the_formula() {
         for k in 0..=100_000u32 {

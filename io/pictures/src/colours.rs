@@ -10,7 +10,7 @@ const PALE: [u8; 3] = [244, 244, 242];
 /// sRGB colours of a sheet by a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {
-    /// One for each vertex, between which those of faces are interpolated.
+    /// One colour for each vertex; on faces colours are interpolated.
     Vertices(Vec<[u8; 3]>),
     /// One for each edge, which is drawn as a bar on faces that are white.
     Edges(Vec<[u8; 3]>),

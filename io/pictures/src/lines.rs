@@ -102,7 +102,7 @@ impl Painter<'_> {
         marks
     }
 
-    /// Bars along edges, thinner where the mesh is finer; those that are nearer to the viewer come last.
+    /// Bars along edges, thinner where the mesh is finer; bars nearer to the viewer come last.
     fn bars(&self, picture: &SheetPicture<'_>, mean: f64, scene: &Triangles) -> Vec<Stroke> {
         let Some(colours) = picture.colours else {
             return Vec::new();

@@ -67,7 +67,7 @@ impl Occlusion {
         }
     }
 
-    /// What is around the three corners of every piece; those of pieces that are not seen at all count as
+    /// What is around the three corners of every piece; corners of pieces that are not seen at all count as
     /// open.
     ///
     /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law.
@@ -189,7 +189,7 @@ fn shares_vertex(spots: &[Spot], k: usize) -> bool {
     here(spots.get(k + 1)) || k > 0 && here(spots.get(k - 1))
 }
 
-/// The points of the corners of pieces, in the order of vertices, and those of each piece.
+/// The points of the corners of pieces, in the order of vertices, and the points of each piece.
 fn spots(pieces: &[Piece], scene: &Triangles) -> (Vec<Spot>, Vec<[usize; 3]>) {
     let mut corners_at: Vec<Vec<(usize, usize)>> = vec![Vec::new(); scene.x.len()];
     for (number, piece) in pieces.iter().enumerate() {

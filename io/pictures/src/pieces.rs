@@ -28,7 +28,7 @@ pub(super) struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The parts of all faces that the picture may show. Faces of the sheet stay whole. Those of bodies are
+    /// The parts of all faces that the picture may show. Faces of the sheet stay whole. Faces of bodies are
     /// halved until they are small enough, and parts outside of the picture are left out on the way: the
     /// number of pieces is bounded by the picture, however large a body is. New points are added to the
     /// scene.
@@ -338,9 +338,8 @@ mod tests {
     }
 
     /// The number of pieces is bounded by the picture, not by the body: a body of a hundred kilometres is cut
-    /// into about as many as one of ten metres, of which the picture shows the same. Those that reach to the
-    /// horizon have some more rows of pieces whenever they are twice as large. The pieces cover all that is
-    /// seen.
+    /// into about as many as a body of ten metres that looks alike in the picture. A body that reaches to the
+    /// horizon has some more rows of pieces whenever it is twice as large. The pieces cover all that is seen.
     #[test]
     fn huge_bodies_have_no_more_pieces_than_large_ones() {
         for elevation in [0.0, 3.0, 25.0, 90.0] {

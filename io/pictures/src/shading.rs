@@ -71,7 +71,7 @@ impl Painter<'_> {
         s * s * (3.0 - 2.0 * s)
     }
 
-    /// All pieces that are seen in their light; those of bodies at the rim of a shadow are cut once more.
+    /// All pieces that are seen in their light; pieces of bodies at the rim of a shadow are cut once more.
     pub(super) fn facets(&self, pieces: &[Piece], scene: &mut Triangles) -> Vec<Facet> {
         let occlusion = Occlusion::new(scene, REACH * self.scale);
         let outlines: Vec<Facet> = pieces.iter().map(|p| self.outline(p, scene)).collect();

@@ -224,7 +224,7 @@ impl Skin {
             Self::Round { ends, .. } => unit(sub(p, nearest(ends, p))),
             Self::Tube { ends, .. } => {
                 let axis = unit(sub(ends[1], ends[0]));
-                // Faces of the mantle are at right angles to those of the ends.
+                // Faces of the mantle are at right angles to the ends.
                 if dot(axis, flat).abs() > 0.7 {
                     *flat
                 } else {

@@ -1,7 +1,7 @@
 """isosheet simulates sheets that bend and crease and do not stretch: paper, sheet metal, plastic film, cloth.
 
 A scene (`Scene`) has the keys of scene files. A `Simulation` moves it step by step, a `Run` reads what the
-command ``isosheet simulate`` or `Scene.simulate` wrote. Arrays are those of numpy; units are metres, seconds,
+command ``isosheet simulate`` or `Scene.simulate` wrote. Arrays are numpy arrays; units are metres, seconds,
 kilograms and newtons, angles in scenes are in degrees.
 
     >>> import isosheet

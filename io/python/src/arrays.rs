@@ -38,7 +38,7 @@ pub(crate) fn vectors<'py>(py: Python<'py>, x: &[f64]) -> PyResult<Bound<'py, Py
     rows(py, x.as_chunks::<3>().0)
 }
 
-/// Most numbers of an array: those of ten times as many vertices as a sheet may have for its runs to end.
+/// Most numbers of an array: for ten times as many vertices as a sheet may have for its runs to end.
 const MOST_NUMBERS: usize = 10_000_000;
 
 /// Refuses arrays of numpy that have a mask, which a scene has no place for, or more numbers than any scene.
@@ -47,8 +47,8 @@ pub(crate) fn refuse_array(value: &Bound<'_, PyAny>) -> PyResult<()> {
     // Of other arrays `mask` is a method.
     let mask = value.getattr_opt(intern!(py, "mask"))?;
     if mask.is_some_and(|mask| !mask.is_callable()) {
-        let message = "the array has a mask, and a scene has numbers alone; give those that are meant, by \
-                       `array.compressed()` or `array.filled(value)`";
+        let message = "the array has a mask, and a scene has numbers alone; give the numbers that are \
+                       meant, by `array.compressed()` or `array.filled(value)`";
         return Err(PyValueError::new_err(message));
     }
     let Some(size) = value.getattr_opt(intern!(py, "size"))? else {

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `scene.rs`, `value.rs` | scenes, and Python's values as those of TOML |
+//! | `scene.rs`, `value.rs` | scenes, and Python's values as values of TOML |
 //! | `simulation.rs`, `report.rs` | simulations and what a step reports |
 //! | `mesh.rs`, `foreign.rs` | meshes from arrays, generators, files and other libraries |
 //! | `materials.rs` | the catalogue |

@@ -135,7 +135,7 @@ impl Mesh {
 
     /// A mesh of a generator of scenes: ``Mesh.generate("square", side=0.2, level=3)``.
     ///
-    /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises `SceneError` for wrong ones.
+    /// Names and parameters are as in ``sheet.mesh`` of scenes. Raises `SceneError` for wrong ones.
     #[staticmethod]
     #[pyo3(signature = (name, **parameters))]
     fn generate(
@@ -148,7 +148,7 @@ impl Mesh {
         let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
         let mesh = value.try_into();
         let mesh: scene::Mesh = mesh.map_err(|e: toml::de::Error| {
-            let remedy = "names and parameters are those of `sheet.mesh` in scenes";
+            let remedy = "names and parameters are as in `sheet.mesh` of scenes";
             of_scene(py, &Problem::new(Key::root(), e.message(), remedy).into())
         })?;
         Self::of(py, &mesh)

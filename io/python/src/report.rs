@@ -7,7 +7,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A class whose values are those of a report of the engine.
+/// A class with the values of a report of the engine.
 macro_rules! values_of {
     (
         $(#[$of_class:meta])*

@@ -276,8 +276,8 @@ impl Run {
         self.numbers(py, |k| frames.get(k).copied())
     }
 
-    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the
-    /// sheet is from developable.
+    /// Gauss curvatures at the vertices, less the rest shape, 1/m2, of shape (T, V): how far the sheet is
+    /// from developable.
     #[getter]
     fn gauss_curvatures<'py>(
         &self,
@@ -345,10 +345,9 @@ impl Run {
     /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...,
     /// "body[0]", ... and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene
     /// gives a name, by that: a dict of "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and
-    /// "torque" of shape (S, 3), newton metres: of a support those on the sheet, the torque about the mean of
-    /// its vertices; of an obstacle those of the sheet on it, the torque about the origin of its own frame;
-    /// of a body those of all that touches it, the torque about its centre of mass; of its guide those on the
-    /// body.
+    /// "torque" of shape (S, 3), newton metres: from a support on the sheet, with the torque about the mean
+    /// of its vertices; from the sheet on an obstacle, with the torque about the origin of its own frame; on
+    /// a body from all that touches it, with the torque about its centre of mass; from a guide on its body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, then obstacles, bodies and guides, by their numbers.
@@ -454,7 +453,7 @@ impl Run {
     /// frame: one frame alone, by its number, from the end where negative; then .stl, .off and .ply, too.
     /// time: one frame alone, the one that is nearest to a time, seconds; of two that are as near the later.
     /// every: every so many frames one.
-    /// fps: frames a second in place of those that were recorded, between which vertices go straight on.
+    /// fps: frames a second in place of the recorded frames, between which vertices go straight on.
     ///
     /// Returns the files, the one with that name last. ``run.save("cloth.usda", fps=24)``,
     /// ``run.save("end.obj", frame=-1)``
@@ -505,7 +504,7 @@ impl Run {
     /// height: pixels; the width follows from what is seen.
     /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
     /// colour: a quantity that the sheet is coloured by, such as "gap", with a scale of colours below the
-    ///     sheet; an unknown name raises an `Error` with those that the run has.
+    ///     sheet; an unknown name raises an `Error` with the names that the run has.
     /// range: the values at both ends of the scale, by default those in what is drawn.
     #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None, colour = None, range = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -537,7 +536,7 @@ impl Run {
     /// notebooks show, or where ffmpeg is installed as an .mp4, .webm or .gif file:
     /// ``run.film("cloth.apng")``.
     ///
-    /// every and fps are those of `save`, height, view, colour and range those of `picture`.
+    /// every and fps are as in `save`, height, view, colour and range as in `picture`.
     #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None, colour = None, range = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn film(

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use toml::Value;
 
-/// A scene: everything that decides how a simulation goes. The keys are those of scene files.
+/// A scene: everything that decides how a simulation goes. The keys are the keys of scene files.
 ///
 /// The keys are given as keyword arguments, see `Scene.from_dict`. `Scene.from_toml` reads a file,
 /// `Scene.new` makes a scene to start from. A scene never changes; Scene.edit makes another one.
@@ -40,7 +40,7 @@ impl Scene {
         &self.file
     }
 
-    /// The scene with all its values, also those that its text leaves out.
+    /// The scene with all its values, including values that its text leaves out.
     fn whole(&self) -> PyResult<Value> {
         let value = Value::try_from(self.file.scene());
         value.map_err(|e| PyValueError::new_err(e.to_string()))
@@ -111,7 +111,7 @@ impl Scene {
     /// The scene of a file, or of a text.
     ///
     /// `text_or_path`: a path, or a text of TOML, which is told by its having more than one line.
-    /// edits: keys and values that replace those of the file, such as {"stop.time": 0.5}.
+    /// edits: keys with new values in place of the file's values, such as {"stop.time": 0.5}.
     ///
     /// Raises `SceneError` with all problems that were found.
     #[staticmethod]
@@ -196,7 +196,7 @@ impl Scene {
         &self.file.text().text
     }
 
-    /// All values as a dictionary, also those that the text leaves out.
+    /// All values as a dictionary, including values that the text leaves out.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.whole()?)
     }

@@ -256,13 +256,13 @@ impl Simulation {
     /// Records all steps from now on in a folder, as `isosheet simulate` does: page, frames, history, loads,
     /// measures, summary. Use it in a ``with`` statement, or call its `close`.
     ///
-    /// fps: frames per second of simulated time, by default those of the scene.
+    /// fps: frames per second of simulated time, by default as in the scene.
     /// every: the number of steps from one frame to the next, in place of `fps`.
     /// replace: whether a run that the folder holds is deleted; without it, it is kept, and `RunFailed`
     /// raised.
     ///
-    /// Without changes between the steps the files have the bits of those of the command, but for wall times.
-    /// The scene in the folder has what was driven as it went, and ends where the recording does; what else
+    /// Without changes between the steps the files have the bits of the files of the command, but for wall
+    /// times. The scene in the folder has what was driven as it went, and ends where the recording does; what else
     /// was changed is in ``run.summary["control"]``.
     ///
     ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
@@ -346,7 +346,7 @@ impl Simulation {
     /// Values have the units of scenes: metres, degrees, newtons. A rigid motion goes to a pose:
     /// ``simulation.drive({"obstacle[0].motion": {"position": p, "orientation": q}}, until=0.1)``, with the
     /// origin of its frame p, metres, and a unit quaternion q, w x y z, that takes directions of the frame to
-    /// those of space. The frame of an obstacle is its own, and that of a support,
+    /// directions of space. The frame of an obstacle is its own, and that of a support,
     /// `support[0].hold.moving_clamp`, the one of space at the start, if the scene says no other with
     /// `poses`. Until then the origin goes straight, and the frame turns about one axis, the shorter way
     /// round.
@@ -430,7 +430,7 @@ impl Simulation {
         )
     }
 
-    /// Masses of the vertices, kg, of shape (V,); zero of those of rigid bodies.
+    /// Masses of the vertices, kg, of shape (V,); zero for vertices of rigid bodies.
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.with(py, |live| live.masses()))

@@ -1,4 +1,4 @@
-//! Python's values as those of TOML, and back.
+//! Python's values as values of TOML, and back.
 
 use crate::arrays::refuse_array;
 use crate::error::of_file;
@@ -12,7 +12,7 @@ use toml::{Table, Value};
 /// Deepest nesting of a value: twice that of the deepest scene.
 const MOST_LEVELS: usize = 64;
 
-/// The values of further classes: those of meshes, or none.
+/// The values of further classes: of meshes, or none.
 pub(crate) type Further = fn(&Bound<'_, PyAny>) -> PyResult<Option<Value>>;
 
 /// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,

@@ -157,7 +157,7 @@ def test_a_sheet_starts_at_arrays():
     radius = 0.1
     angle = rolled[:, 0] / radius
     bent = np.column_stack([radius * np.sin(angle), rolled[:, 1], radius * (1 - np.cos(angle))])
-    # Rods keep their lengths: those of the bent mesh are the rest lengths.
+    # Rods keep their lengths: the lengths of the bent mesh are the rest lengths.
     mesh = isosheet.Mesh(bent, square.faces)
     moved = bent @ np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     velocities = np.zeros_like(moved)

@@ -5,8 +5,8 @@ use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The largest sums of all forces and torques (those of supports, contact, weight and loads, less the rate of
-/// the momentum), beside the largest forces and torques of the supports. Sums are zero where all forces are
+/// The largest sums of all forces and torques (of supports, contact, weight and loads, less the rate of the
+/// momentum), beside the largest forces and torques of the supports. Sums are zero where all forces are
 /// right, to the tolerance of the steps.
 ///
 /// Of sheets without rods it is that of every step with BDF2 and implicit Euler, of others that of the end.

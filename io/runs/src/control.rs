@@ -186,7 +186,7 @@ fn without_rests<T: Copy>(keys: Vec<T>, same: fn(&T, &T) -> bool) -> Vec<T> {
     needed.map(|k| keys[k]).collect()
 }
 
-/// The keys at which two values differ: those of lists of numbers as a whole.
+/// The keys at which two values differ; lists of numbers count as a whole.
 fn differing(before: &Value, after: &Value, key: Key, found: &mut Vec<Key>) {
     match (before, after) {
         (Value::Table(before), Value::Table(after)) => {

@@ -19,7 +19,7 @@ pub struct FoldVerdict {
     pub furthest: Option<FoldedCrease>,
     /// What touches the panels beside that one, if it is open.
     pub held_open: Option<TouchingFaces>,
-    /// The number of panels, and of those that bend by more than [`FoldVerdict::BENDS`] at an edge.
+    /// The number of panels, and of panels that bend by more than [`FoldVerdict::BENDS`] at an edge.
     pub panels: [usize; 2],
     /// Whether they can bend.
     pub is_elastic: bool,
@@ -176,7 +176,8 @@ impl FoldVerdict {
                     false => ", but only as panels pass through each other, which no paper does",
                     _ => "",
                 };
-                format!("every crease closes{only}")
+                let open = Self::OPEN;
+                format!("every crease ends within {open} degrees of its angle{only}")
             }
             (open, Some(crease)) => format!(
                 "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
@@ -221,7 +222,7 @@ impl FoldVerdict {
     }
 }
 
-/// The edges inside of panels: those that are no creases.
+/// The edges inside of panels: all edges but the creases.
 fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<Item = EdgeId> {
     let mut is_crease = vec![false; topology.edge_count()];
     for (e, _) in &targets.creases {

@@ -457,7 +457,7 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The scene that is stored in the folder of a run. Its mesh files are those of the folder.
+/// The scene that is stored in the folder of a run. Its mesh files are in the folder.
 ///
 /// # Errors
 /// [`RunError::NoRun`] without one, [`RunError::File`] if it names files that are not in the folder.

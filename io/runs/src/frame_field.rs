@@ -240,7 +240,7 @@ impl<'a> FrameField<'a> {
         let deformed = move |frame: &MotionFrame<'_>| {
             let mut x = Cow::Borrowed(frame.x);
             if x.len() != model.coordinate_count() {
-                // After the vertices of sheets those of bodies, wherever they are.
+                // After the vertices of sheets the vertices of bodies, wherever they are.
                 x.to_mut().resize(model.coordinate_count(), 0.0);
             }
             model.elastic_deformation(frame.t, &x, &memories)

@@ -285,7 +285,7 @@ fn read_whole(file: &mut impl Read, buffer: &mut [u8]) -> io::Result<bool> {
 pub(crate) struct StoredFrames {
     pub(crate) path: PathBuf,
     pub(crate) shape: FrameShape,
-    /// As many there are at least: of a complete run those of its summary, and 0 of one in progress.
+    /// The least number of frames: for a complete run the number in its summary, and 0 for a run in progress.
     pub(crate) least: u64,
 }
 

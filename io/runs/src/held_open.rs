@@ -77,7 +77,7 @@ impl TouchingFaces {
                     let far = *far
                         .iter()
                         .find(|f| panels[f.index()] != panels[near.index()])?;
-                    // The weights of the first primitive are positive, those of the second negative.
+                    // The weights of the first primitive are positive, the weights of the second negative.
                     let side = if turned { -1.0 } else { 1.0 };
                     let at = corners.iter().zip(weights).filter(|(_, w)| side * w > 0.0);
                     let at: Vector3<f64> = at.map(|(v, w)| side * w * rest(*v)).sum();

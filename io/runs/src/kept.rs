@@ -1,6 +1,6 @@
 //! What stays of the angles of a sheet that yields.
 
-use isosheet_mesh::wording::{place, quoted};
+use isosheet_mesh::wording::{brief, place, quoted};
 use isosheet_scenes::UnderWay;
 use serde::{Deserialize, Serialize};
 
@@ -36,14 +36,13 @@ pub struct KeptFold {
     pub springback: f64,
 }
 
-/// What a sheet keeps of a bend over the size of a face: the root mean square of the lengths of its edges.
+/// What a sheet keeps of its bend, at the face that keeps most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptBend {
-    /// The angle that is kept, degrees.
-    pub kept: f64,
-    /// The largest angle in the run by which the face with the largest kept angle was bent beyond that,
-    /// degrees.
-    pub springback: f64,
+    /// The curvature that is kept, 1/m: the moment is zero there. It is positive for a valley.
+    pub curvature: f64,
+    /// The largest curvature of this face under load in the run, 1/m: what is kept and the elastic part.
+    pub loaded: f64,
     /// The middle of the face in the flat sheet, metres.
     pub at: [f64; 3],
 }
@@ -96,27 +95,33 @@ impl KeptAngles {
         };
         let sheet = &under_way.facts.sheet;
         let (topology, lengths) = (sheet.topology(), sheet.lengths());
-        let angle = |(face, [curvature, _]): (_, &[f64; 2])| {
+        // The root mean square of the lengths of its edges.
+        let size = |face| {
             let squares = topology
                 .face_edges(face)
                 .map(|e| lengths[e.index()].powi(2));
-            let size = (squares.iter().sum::<f64>() / 3.0).sqrt();
-            (face, (curvature * size).to_degrees())
+            (squares.iter().sum::<f64>() / 3.0).sqrt()
         };
-        let faces = topology.face_ids().zip(&curvatures).map(angle);
-        let most = faces.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let Some((face, kept)) = most.filter(|(_, kept)| kept.abs() > TOLD) else {
+        let faces = topology.face_ids().zip(&curvatures);
+        let most = faces.max_by(|a, b| a.1[0].abs().total_cmp(&b.1[0].abs()));
+        let is_seen = |face, curvature: f64| (curvature * size(face)).to_degrees().abs() > TOLD;
+        let Some((face, &[kept, _])) = most.filter(|(face, [kept, _])| is_seen(*face, *kept))
+        else {
             return;
         };
         let corners = topology.faces()[face.index()].map(|v| sheet.position(v));
-        // What is bent beyond the angle that is kept is elastic.
         let elastic = simulation.elastic_deformation();
         let elastic = elastic.and_then(|of| of.angle.get(face.index()).copied());
-        let elastic = elastic.unwrap_or(0.0).to_degrees();
-        let before = self.sheet.map_or(0.0, |bend| bend.springback);
+        let elastic = elastic.unwrap_or(0.0) / size(face);
+        let loaded = kept + elastic.copysign(kept);
+        let before = self.sheet.map_or(0.0, |bend| bend.loaded);
         self.sheet = Some(KeptBend {
-            kept,
-            springback: elastic.max(before),
+            curvature: kept,
+            loaded: if before.abs() > loaded.abs() {
+                before
+            } else {
+                loaded
+            },
             at: [0, 1, 2].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 3.0),
         });
     }
@@ -155,11 +160,12 @@ impl KeptAngles {
             ));
         }
         if let Some(bend) = &self.sheet {
+            let radius = |curvature: f64| brief(1.0 / curvature.abs());
             words.push(format!(
-                "the sheet keeps a bend of {:.2} degrees over a face near {}, with a springback of {:.2} degrees",
-                bend.kept,
+                "the sheet keeps a radius of curvature of {} m at {} of the flat sheet, where it was bent to {} m under load",
+                radius(bend.curvature),
                 place(&bend.at),
-                bend.springback
+                radius(bend.loaded)
             ));
         }
         words

@@ -30,8 +30,8 @@ const FLAT: f64 = 20.0;
 /// Panels cover each other whose common area is this share of a face at least: neighbours meet along a line.
 const COMMON: f64 = 1e-3;
 
-/// The least distance of panels whose order can be told, beside the longest side of the sheet: a tenth of the
-/// gap that panels with contact keep.
+/// The least distance of panels whose order can be told where nothing keeps them apart, beside the longest
+/// side of the sheet.
 const APART: f64 = 2.5e-5;
 
 /// What is known of two panels that cover each other.
@@ -61,11 +61,23 @@ impl Layers {
             return Err(LayersError::Passing { part });
         }
         let topology = recording.sheet.topology();
-        Self::of_panels(topology, x, &panels(topology, targets))
+        // Panels in contact never pass through each other: however near they are, the sign of their distance
+        // tells their order.
+        let least = match recording.scene.scene().contact.self_contact {
+            true => 0.0,
+            false => APART * size(x.as_chunks::<3>().0),
+        };
+        Self::of_panels(topology, x, &panels(topology, targets), least)
     }
 
-    /// Of faces at positions `x` (`3V`, metres), each with a number that stands for its panel.
-    fn of_panels(topology: &Topology, x: &[f64], roots: &[usize]) -> Result<Self, LayersError> {
+    /// Of faces at positions `x` (`3V`, metres), each with a number that stands for its panel. Panels have an
+    /// order that are at least `least` apart, metres.
+    fn of_panels(
+        topology: &Topology,
+        x: &[f64],
+        roots: &[usize],
+        least: f64,
+    ) -> Result<Self, LayersError> {
         let panels = compact(roots);
         let count = panels.iter().max().map_or(0, |last| last + 1);
         let corners = |f: usize| {
@@ -102,7 +114,6 @@ impl Layers {
             Triangle::new(at)
         });
         let triangles: Vec<Triangle> = triangles.collect();
-        let least = APART * size(x.as_chunks::<3>().0);
         let covers = lower_first(covers(&triangles, &panels), least)?;
         let levels = levels(count, &covers, &panels)?;
         Ok(Self {
@@ -198,12 +209,16 @@ fn levels(
     panels: &[usize],
 ) -> Result<Vec<usize>, LayersError> {
     let mut levels = vec![0; count];
+    // The pair that lifted each panel last.
+    let mut lifted = vec![None; count];
     // A way upward passes each panel once, so that as many rounds suffice.
     for _ in 0..=count {
         let mut is_settled = true;
-        for [lower, upper] in covers.iter().map(|pair| pair.map(|f| panels[f])) {
+        for pair in covers {
+            let [lower, upper] = pair.map(|f| panels[f]);
             if levels[upper] <= levels[lower] {
                 levels[upper] = levels[lower] + 1;
+                lifted[upper] = Some(*pair);
                 is_settled = false;
             }
         }
@@ -211,7 +226,27 @@ fn levels(
             return Ok(levels);
         }
     }
-    Err(LayersError::Circle)
+    Err(LayersError::Circle {
+        faces: circle(&levels, &lifted, panels),
+    })
+}
+
+/// A face of each panel of a circle, from the pairs that lifted panels without end.
+fn circle(levels: &[usize], lifted: &[Option<[usize; 2]>], panels: &[usize]) -> Vec<FaceId> {
+    let below = |panel: usize| lifted[panel].map_or(panel, |[lower, _]| panels[lower]);
+    // The highest panel is of a circle or above one: so many steps down end in it.
+    let highest = (0..levels.len()).max_by_key(|panel| levels[*panel]);
+    let first = (0..levels.len()).fold(highest.unwrap_or(0), |panel, _| below(panel));
+    let mut faces = Vec::new();
+    let mut panel = first;
+    loop {
+        faces.extend(lifted[panel].map(|[_, upper]| FaceId::from_index(upper)));
+        panel = below(panel);
+        if panel == first {
+            faces.reverse();
+            return faces;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Why the layers of a folded sheet have no order.
 
-use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
+use isosheet_mesh::{Advice, FaceId};
 use thiserror::Error;
 
 /// Why the panels of a run have no order.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LayersError {
     /// The run has no frame, or its scene does not fold a crease pattern.
@@ -31,20 +31,32 @@ pub enum LayersError {
         /// The least distance that tells an order, metres.
         least: f64,
     },
-    /// Panels lie on each other in a circle, as woven flaps do, and have no layers one above the other.
-    #[error("panels lie on each other in a circle")]
-    Circle,
+    /// Panels lie on each other in a circle and have no layers one above the other.
+    #[error("{} panels lie on each other in a circle, each on the one before: with the faces {}", faces.len(), numbers(faces))]
+    Circle {
+        /// A face of each panel.
+        faces: Vec<FaceId>,
+    },
+}
+
+fn numbers(faces: &[FaceId]) -> String {
+    let numbers: Vec<String> = faces.iter().map(|f| f.index().to_string()).collect();
+    numbers.join(", ")
 }
 
 impl Advice for LayersError {
     fn advice(&self) -> Option<&'static str> {
         Some(match self {
             Self::NoPattern => "give the folder of a run of `isosheet fold`",
-            Self::NotFlat { .. } => "fold a pattern that folds flat, to the whole of its angles",
+            Self::NotFlat { .. } => {
+                "layers are of a sheet that is folded flat, by 180 degrees at each crease"
+            }
             Self::Passing { .. } | Self::Touching { .. } => {
                 "fold the pattern with `--contact`, so that panels keep a gap"
             }
-            Self::Circle => "look at the page of the run, which shows the panels from all sides",
+            Self::Circle { .. } => {
+                "look at the page of the run, which shows the panels from all sides"
+            }
         })
     }
 }

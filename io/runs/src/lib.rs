@@ -41,6 +41,7 @@ mod error;
 mod estimate;
 mod extend;
 mod extension_error;
+mod fit;
 mod flat_vertex;
 mod fold_order;
 mod fold_verdict;
@@ -89,6 +90,9 @@ pub use error::RunError;
 pub use estimate::Estimate;
 pub use extend::extend_folder;
 pub use extension_error::ExtensionError;
+pub use fit::{
+    Fit, FitError, FitProgress, FitRange, FitRuns, FitTarget, Fitted, FittedValue, ReachedTarget,
+};
 pub use flat_vertex::UnfoldableVertex;
 pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};

@@ -27,7 +27,7 @@ use thiserror::Error;
 /// How a simulation is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RecorderOptions {
-    /// Frames per second of simulated time; without it those of the scene.
+    /// Frames per second of simulated time; without it the number of the scene.
     pub frames_per_second: Option<f64>,
     /// What becomes of a run that the folder holds.
     pub existing: ExistingRun,
@@ -145,7 +145,7 @@ impl Recorder {
     /// Begins to record a simulation in a folder, with a frame of its present state.
     ///
     /// # Errors
-    /// [`RunError::Taken`] if the folder holds a run that is to be kept, and those of
+    /// [`RunError::Taken`] if the folder holds a run that is to be kept, and the errors of
     /// [`simulate`](super::simulate).
     pub fn begin(
         live: &mut LiveScene,

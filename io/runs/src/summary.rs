@@ -141,7 +141,7 @@ pub struct Ending {
 
 impl Ending {
     /// Whether supports and obstacles pull or push against each other with more than what they hold: then
-    /// their forces are those of the stiffness of the sheets.
+    /// their forces come from the stiffness of the sheets.
     pub(crate) fn is_squeezed(&self) -> bool {
         let on_obstacles = self.obstacles.iter().map(|f| -Vector3::from(*f));
         let supports = self.supports.iter().map(|f| Vector3::from(*f));

@@ -49,8 +49,9 @@ impl Summary {
                  shorter than its arc",
                 brief(100.0 * bend.shortening())
             );
-            let remedy = "refine the mesh there: with half the edge length the error is a quarter; the page colours \
-                          faces by their strain and by the share of stretching in their energy";
+            let remedy = "refine the mesh there, or all of it by `sheet.refine` (of `drape`, `hang` and `crumple` \
+                          `--refine`): with half the edge length the error is a quarter; the page colours faces by their \
+                          strain and by the share of stretching in their energy";
             warnings.push(Warning::new(message, remedy));
         }
         let at_rest = self.elastic.and_then(|elastic| elastic.at_rest);
@@ -69,7 +70,7 @@ impl Summary {
             let remedy = "refine the mesh there; for a sheet that only rolls up or unrolls as a whole it may stay as it is";
             warnings.push(Warning::new(message, remedy));
         }
-        // Where a sheet mostly bends, its forces are those of the bends.
+        // Where a sheet mostly bends, its forces come from the bends.
         let is_stretched = |e: &ElasticSummary| e.share > 0.5 && e.slack > Self::SLACK;
         let slack = self.elastic.filter(is_stretched);
         if let Some(elastic) = slack.filter(|_| self.ending.is_squeezed()) {

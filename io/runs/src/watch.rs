@@ -49,7 +49,7 @@ pub struct StepPart {
     pub part: f64,
     /// Accepted sub-steps of the step.
     pub substeps: usize,
-    /// Matrix factorisations of the step, those of rejected sub-steps included.
+    /// Matrix factorisations of the step, rejected sub-steps included.
     pub factorisations: usize,
 }
 

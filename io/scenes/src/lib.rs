@@ -3,8 +3,8 @@
 //! A scene is a TOML file ([`SceneFile`]) or is put together in a program ([`Scene`]). Lengths are in metres,
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
 //!
-//! The names are those of the file, so that a scene reads in the same way in both: [`SheetKey`] is what the
-//! key `sheet` has, of which a sheet (`isosheet_mesh::Sheet`) is made. This scene is that of
+//! The names are the names of the file, so that a scene reads in the same way in both: [`SheetKey`] is what
+//! the key `sheet` has, of which a sheet (`isosheet_mesh::Sheet`) is made. This scene is that of
 //! [`StartingPoint::Drape`]:
 //!
 //! ```
@@ -119,6 +119,8 @@ mod placing {
 
 /// What is read off: measures, and how far targets are reached.
 mod measures {
+    pub(crate) mod crease_gauge;
+    pub(crate) mod facing;
     pub(crate) mod measure;
     pub(crate) mod targets;
     pub(crate) mod yielding;
@@ -384,7 +386,7 @@ impl Scene {
         SceneError::of(self.checks().problems)
     }
 
-    /// Numbers that are possible, and larger or smaller than those of any sheet of this world.
+    /// Numbers that are possible, and larger or smaller than for any sheet of this world.
     pub(crate) fn doubts(&self) -> Vec<Warning> {
         let mut doubts = self.checks().doubts;
         doubts.extend(creases::in_radians(&self.crease));

@@ -130,7 +130,7 @@ impl Read for Until<'_> {
 }
 
 impl Shared {
-    /// Adds a connection to those whose request has not come yet, and closes the oldest one where there are
+    /// Adds a connection to the ones that wait for their request, and closes the oldest one where there are
     /// too many. Returns its number.
     fn wait_for(&self, connection: &TcpStream) -> io::Result<u64> {
         let connection = connection.try_clone()?;
@@ -146,7 +146,7 @@ impl Shared {
         Ok(number)
     }
 
-    /// Takes a connection out of those whose request has not come yet.
+    /// Takes a connection out of the ones that wait for their request.
     fn has_come(&self, number: u64) {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.retain(|(other, _)| *other != number);

@@ -180,7 +180,7 @@ impl Report<'_> {
         let opened = self.opened;
         if self.unit_is_assumed {
             notes.push(
-                "the file does not say how long its unit is, which is taken for a metre: `--unit mm`"
+                "the file does not say how long its unit is, which is taken for a metre; if it is a millimetre, give `--unit mm`"
                     .to_owned(),
             );
         }

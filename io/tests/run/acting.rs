@@ -125,7 +125,7 @@ fn a_towel_hangs_by_its_corners() {
         "--material",
         "cotton",
         "--size",
-        "0.3",
+        "300mm",
     ];
     let (said, recording) = done(dir.path(), &words);
     // It is held by a corner wherever its coordinates are, and the opposite corner is as far down as the
@@ -283,7 +283,12 @@ fn misuse_is_answered_before_anything_is_run() {
         2,
         &["cotton"],
     );
-    refused(&["drape", "cloth.obj", "--size=-1"], 2, &["0.0001 to 1000"]);
+    refused(&["drape", "cloth.obj", "--size=-1"], 2, &["0.1mm to 1000m"]);
+    refused(
+        &["drape", "cloth.obj", "--size", "200"],
+        2,
+        &["without a unit this is 200 metres", "200mm"],
+    );
     refused(
         &["drape", "cloth.obj", "--table", "--on", "block.obj"],
         2,
@@ -296,7 +301,7 @@ fn misuse_is_answered_before_anything_is_run() {
         "--on",
         "block.obj",
         "--tool-size",
-        "100",
+        "100m",
     ];
     refused(
         &far,

@@ -101,7 +101,7 @@ fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
     // last row that was waited for.)
     let partial = Recording::read(&dir.join("stopped")).unwrap();
     assert!(rows >= 100, "{rows}");
-    // One row and one frame are those of the start; a frame is taken after every 17th step.
+    // One row and one frame are from the start; a frame is taken after every 17th step.
     assert_eq!(partial.trajectory.len(), 1 + (rows - 1) / 17);
     let written = Trajectory::read(&dir.join("stopped/trajectory.npz")).unwrap();
     assert_eq!(written, partial.trajectory);

@@ -425,7 +425,7 @@ fn numbered_files_of_an_earlier_export_are_removed() {
     let left = names(&dir.join("film"));
     assert_eq!(left.len(), few + 3, "{left:?}");
 
-    // Files of frames keep the numbers of the run; those of bodies go with the bodies.
+    // Files of frames keep the numbers of the run; numbers of bodies go with the bodies.
     for extension in ["obj", "pvd"] {
         let output = format!("f.{extension}");
         let inner = if extension == "pvd" { "vtp" } else { "obj" };

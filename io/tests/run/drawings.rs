@@ -286,7 +286,8 @@ fn lines_are_what_colours_layers_and_options_say() {
     }
 }
 
-/// The vertices of an arc are on its circle, those of a hole on its own, and an annulus has two boundaries.
+/// The vertices of an arc are on its circle, the vertices of a hole on its own, and an annulus has two
+/// boundaries.
 #[test]
 fn curved_creases_and_holes() {
     let dir = tempfile::tempdir().unwrap();

@@ -318,7 +318,7 @@ time = 0.1
 }
 
 /// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and
-/// their forces are those of the corners. At rest the forces balance weight and torque: half of it at each
+/// their forces belong to the corners. At rest the forces balance weight and torque: half of it at each
 /// corner.
 #[test]
 fn forces_of_corners_balance_the_weight_of_a_banner() {

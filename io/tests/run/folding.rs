@@ -72,7 +72,7 @@ fn a_sheet_of_others_is_folded_by_one_command() {
 }
 
 /// The pleated hyperbolic paraboloid of others has no rigid folding. Its panels bend, and it becomes a
-/// saddle: the corners of a diagonal are above the middle, and those of the other one below.
+/// saddle: the corners of one diagonal are above the middle, and the corners of the other below.
 #[test]
 fn a_pattern_without_rigid_folding_bends_its_panels() {
     let Some(data) = data_folder() else {

@@ -14,6 +14,7 @@ mod drawings;
 mod ends;
 mod events;
 mod extending;
+mod fit;
 mod fold;
 mod fold_sides;
 mod fold_verdicts;
@@ -132,7 +133,7 @@ fn summary(folder: &Path) -> Summary {
 
 /// Everything but the wall time is the same, to the bit.
 fn assert_same(one: &Path, other: &Path) {
-    // Only scenes with supports or obstacles have loads, and only those that name measures have some.
+    // Only scenes with supports or obstacles have loads, and only scenes that name measures have measures.
     for file in ["loads.csv", "measures.csv", "events.csv"] {
         let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).ok());
         assert!(a == b, "{file} differs in {}", other.display());

@@ -285,7 +285,7 @@ fn wrong_keys_and_values_are_refused_before_anything_runs() {
         second,
         third,
         fourth,
-        "scene.toml:",
+        "scene.toml with sheet.damping=1, stop.time=0:",
         "nothing was run",
     ] {
         assert!(text.contains(part), "{part}: {text}");
@@ -364,7 +364,7 @@ fn folders_keep_their_sweep() {
     let foreign = sweep("sheet.damping=1", &["--out", "mine"]);
     assert_eq!(code(&foreign), Some(4), "{}", stderr(&foreign));
     assert_eq!(fs::read_dir(dir.join("mine")).unwrap().count(), 1);
-    // Runs of the scene as it was are not those of a scene that was changed since.
+    // Runs of the scene as it was do not count for a scene that was changed since.
     let text = fs::read_to_string(dir.join("scene.toml")).unwrap();
     fs::write(
         dir.join("scene.toml"),

@@ -109,7 +109,7 @@ fn a_net_is_read_and_folded_again() {
         let done = run(folder, &["fold", pattern]);
         assert_eq!(code(&done), Some(0), "{}", stderr(&done));
         assert!(
-            stdout(&done).contains("every crease closes"),
+            stdout(&done).contains("every crease ends within 5 degrees of its angle"),
             "{}",
             stdout(&done)
         );
@@ -189,6 +189,80 @@ fn a_band_is_a_rectangle_with_its_folded_form() {
     let (mesh, said) = meshed(folder, "band.svg", &["--spacing", "20mm"]);
     assert!((area(&mesh) / (0.08 * perimeter) - 1.0).abs() < 1e-9);
     assert!(said.contains("left out"), "{said}");
+}
+
+/// The lines of the layer `guide` of a drawing in SVG, millimetres.
+fn guides(drawing: &Path) -> Vec<[[f64; 2]; 2]> {
+    let text = fs::read_to_string(drawing).unwrap();
+    let (_, from) = text.split_once("id=\"guide\"").unwrap();
+    let (layer, _) = from.split_once("</g>").unwrap();
+    let paths = layer
+        .split(" d=\"")
+        .skip(1)
+        .map(|path| path.split('"').next().unwrap());
+    let lines = paths.flat_map(|path| path.split('M').skip(1));
+    let line = |line: &str| {
+        let numbers = line.split([' ', 'L']).map(|c| c.parse().unwrap());
+        let [a, b, c, d] = numbers.collect::<Vec<f64>>()[..] else {
+            panic!("{line}");
+        };
+        [[a, b], [c, d]]
+    };
+    lines.map(line).collect()
+}
+
+/// A ring of a cone, of quadrilaterals: its rulings are whole lines from rim to rim, which would meet at the
+/// apex.
+#[test]
+fn rulings_of_a_cone_go_from_rim_to_rim_and_meet_at_its_apex() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (n, m, turn) = (64, 8, 0.75 * TAU);
+    let mut text = String::new();
+    for j in 0..=m {
+        let height = j as f64 / m as f64;
+        for i in 0..=n {
+            let (s, c) = (turn * i as f64 / n as f64).sin_cos();
+            let r = 0.05 * (1.0 + height);
+            writeln!(text, "v {} {} {}", r * c, r * s, 0.1 * height).unwrap();
+        }
+    }
+    for (i, j) in (0..m).flat_map(|j| (0..n).map(move |i| (i, j))) {
+        let a = j * (n + 1) + i + 1;
+        writeln!(text, "f {a} {} {} {}", a + 1, a + n + 2, a + n + 1).unwrap();
+    }
+    fs::write(folder.join("cone.obj"), text).unwrap();
+    unrolled(folder, "cone.obj", "cone.svg", &["--unit", "m"]);
+    let lines = guides(&folder.join("cone.svg"));
+    // As many as there are columns, but for those at the two straight sides.
+    assert!((n - 4..=n).contains(&lines.len()), "{}", lines.len());
+    // The layout has sectors of a ring: 100 mm further out and 50 mm to the side, about an apex at which the
+    // radius of the cone is 0.
+    let slant = 50.0_f64.hypot(100.0);
+    let width = turn * 50.0 / n as f64;
+    let unit = |[p, q]: &[[f64; 2]; 2]| {
+        let d = [q[0] - p[0], q[1] - p[1]];
+        let length = d[0].hypot(d[1]);
+        (length, d.map(|c| c / length))
+    };
+    // The point that is nearest to all of them.
+    let (mut matrix, mut right) = (nalgebra::Matrix2::zeros(), nalgebra::Vector2::zeros());
+    for line in &lines {
+        let (length, [x, y]) = unit(line);
+        // Chords of the rims are nearer to each other than the rims.
+        let least = slant * (turn / n as f64 / 2.0).cos();
+        assert!(length > least && length < 1.01 * slant, "{length}");
+        let normal = nalgebra::Vector2::new(-y, x);
+        let at = nalgebra::Vector2::from(line[0]);
+        matrix += normal * normal.transpose();
+        right += normal * normal.dot(&at);
+    }
+    let apex = matrix.try_inverse().unwrap() * right;
+    for line in &lines {
+        let (_, [x, y]) = unit(line);
+        let off = (nalgebra::Vector2::from(line[0]) - apex).dot(&nalgebra::Vector2::new(-y, x));
+        assert!(off.abs() < width / 4.0, "{line:?}: {off} mm from the apex");
+    }
 }
 
 /// What is asked for and cannot be is refused with what to do, and no file is written.

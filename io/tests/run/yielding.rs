@@ -71,6 +71,10 @@ at = { box = { min = [0.11, -1, -1], max = [1, 1, 1] } }
 centre = [0.08, 0, 0]
 axis = [0, 1, 0]
 angle = { keyframes = { interpolation = \"linear\", keys = [[0, 0], [1, -90], [2, -70]] } }
+[[measure]]
+name = \"opening\"
+at = { box = { min = [0.03, -1, -1], max = [0.09, 1, 1] } }
+quantity = { angle_to = { box = { min = [0.11, -1, -1], max = [1, 1, 1] } } }
 [stop]
 time = 2.0
 ";
@@ -85,6 +89,10 @@ fn the_last_line_tells_what_a_crease_keeps() {
     let said = String::from_utf8(simulated.stdout).unwrap();
     let summary = fs::read_to_string(dir.path().join("run/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    // The angle between the two panels is the one by which the support has turned.
+    let opening = &summary["measures"]["opening"];
+    let last = opening["last"].as_f64().unwrap();
+    assert!((last - 70.0).abs() < 1e-9, "{opening}");
     let kept = &summary["ending"]["kept"]["creases"][0];
     let springback = (0.01_f64 / 0.02).to_degrees();
     for (key, expected) in [

@@ -130,7 +130,7 @@ impl Advice for GenerateError {
     }
 }
 
-/// Sixteen million faces, twice those of M^10. A larger number is taken for a mistake.
+/// Sixteen million faces, twice as many as M^10. A larger number is taken for a mistake.
 const MAX_FACES: u128 = 1 << 24;
 
 pub(crate) fn check_count(

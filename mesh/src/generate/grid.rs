@@ -8,7 +8,7 @@ use crate::Sheet;
 pub enum Diagonals {
     /// Alternating, so that the cells of even parity (i + j even) are cut from lower left to upper right and
     /// the others the other way: the isotropic or "union jack" pattern of Liu, Tang and Joneja 2007, Fig. 4.
-    /// Vertices of even parity have degree 8 inside, those of odd parity 4.
+    /// Vertices of even parity have degree 8 inside, vertices of odd parity 4.
     UnionJack,
     /// All from lower right to upper left: the anisotropic pattern of Figs. 1 and 3. Interior vertices have
     /// degree 6.

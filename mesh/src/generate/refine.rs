@@ -29,7 +29,7 @@ pub fn split_1_4(sheet: &Sheet) -> Result<Sheet, GenerateError> {
 /// sheet.
 ///
 /// Every edge is halved; in each face the midpoint of the longest edge is joined to the opposite corner and
-/// to the other two midpoints, which is bisecting the face and then both halves. The counts are those of
+/// to the other two midpoints, which is bisecting the face and then both halves. The counts are as in
 /// [`split_1_4`], but every old vertex now has twice its degree, because a crease runs from it into every
 /// face around it. Where two edges of a face have the same length within 1e-9, the lower edge index counts as
 /// the longer.

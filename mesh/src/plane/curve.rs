@@ -19,7 +19,7 @@ pub enum PlaneCurve {
 pub struct EllipticArc {
     /// The centre, metres.
     pub centre: [f64; 2],
-    /// Two conjugate half-axes, metres; those of a circle are orthogonal and as long as its radius.
+    /// Two conjugate half-axes, metres; for a circle orthogonal and as long as its radius.
     pub axes: [[f64; 2]; 2],
     /// The values of `a` at both ends, radians.
     pub angles: [f64; 2],

@@ -385,7 +385,7 @@ mod tests {
         }
     }
 
-    /// Vertices of a curved crease lie on its circle, and those of a round hole too.
+    /// Vertices of a curved crease lie on its circle, and so do vertices of a round hole.
     #[test]
     fn curves_keep_their_form() {
         let hole = PlaneCurve::Arc(EllipticArc::circle([0.1, 0.1], 0.01));

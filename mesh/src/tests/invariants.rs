@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{EdgeId, FaceId, HalfEdgeId, Topology, VertexId};
 
 impl Topology {
-    /// Checks every invariant of the adjacency against the face list, by other means than those that built
+    /// Checks every invariant of the adjacency against the face list, by other means than the code that built
     /// it.
     ///
     /// # Panics

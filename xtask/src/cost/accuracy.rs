@@ -185,7 +185,7 @@ impl ExactProblem {
         }
     }
 
-    /// The positions at the end: exact ones, or those of a reference.
+    /// The positions at the end: exact ones, or of a reference.
     fn end(self) -> Result<Vec<f64>> {
         let end = self.duration();
         Ok(match self {
@@ -291,8 +291,8 @@ fn of<'a>(points: &'a [Point], method: &'a str) -> impl Iterator<Item = &'a Poin
     points.iter().filter(move |p| p.method == method)
 }
 
-/// Order of a method: the slope of its error over its step in the finest runs above the floor, of those that
-/// are made in any case; nothing from fewer than three.
+/// Order of a method: the slope of its error over its step in the finest runs above the floor. Runs that are
+/// made in any case count; `None` from fewer than three.
 ///
 /// (The round-off of damped methods grows as steps get shorter, since an acceleration is a difference of
 /// positions over the square of the step: below some 1e-5 s it exceeds their error.)
@@ -311,7 +311,7 @@ fn table(problem: ExactProblem, points: &[Point]) -> Table {
         good.map(|p| p.cpu_s_per_simulated_s).reduce(f64::min)
     };
     let least = |name: &str, error: Error| of(points, name).filter_map(error).reduce(f64::min);
-    // The finest run of those that are made in any case.
+    // The finest run that is made in any case.
     let made = problem.least_runs() - 1;
     let steps = COARSEST << made;
     let at = |name: &str, value: Error| of(points, name).nth(made as usize).and_then(value);

@@ -275,8 +275,8 @@ mod tests {
             method.run(&model, &mut state, (100, 1e-3)).unwrap();
             model.rods().max_strain(&state.x)
         };
-        // c = c0 (1 + g t) exp(-g t), and G v = 2 c0 (...) is small beside it: the velocities were those of
-        // the lengths.
+        // c = c0 (1 + g t) exp(-g t), and G v = 2 c0 (...) is small beside it: the velocities followed the
+        // lengths.
         for gain in [10.0, 50.0] {
             let s: f64 = gain * 0.1;
             let ratio = strain(gain) / (1e-6 * (1.0 + s) * (-s).exp());

@@ -33,7 +33,8 @@ const SOLVERS: [(MassSolverKind, &str); 3] = [
 /// Height of the bump, as a part of the side.
 const BUMP: f64 = 0.1;
 
-/// Sixteen digits less those of the condition number of such coordinates, 1e6 at most (`condition-table`).
+/// Sixteen digits less the digits of the condition number of such coordinates, 1e6 at most
+/// (`condition-table`).
 const ERROR: f64 = 1e-9;
 
 /// A solver on a mesh. The fields are columns of a table, by their names.

@@ -146,7 +146,7 @@ impl WorkPart {
     }
 }
 
-/// The parts of the works that have been run, with their files. The titles of those that another build ran
+/// The parts of the works that have been run, with their files. The titles of parts that another build ran
 /// are added to `left_out`.
 pub(super) fn records(store: &Store, left_out: &mut Vec<String>) -> Result<Vec<Record>> {
     let mut records = Vec::new();

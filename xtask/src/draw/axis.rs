@@ -16,7 +16,7 @@ pub(crate) struct Axis {
     pub(super) label: String,
     range: [f64; 2],
     is_logarithmic: bool,
-    /// Ticks with their texts; those of plotters where there are none.
+    /// Ticks with their texts; without any, the ticks of plotters.
     ticks: Vec<(f64, String)>,
 }
 

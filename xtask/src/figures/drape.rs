@@ -167,7 +167,7 @@ fn pages(figure: u8, all: &[&Draped], effort: Effort) -> Result<Vec<Play>> {
     all.iter().map(of).collect()
 }
 
-/// The ends of cloths: those of rods in the first row, the same of plastic below.
+/// The ends of cloths: rods in the first row, plastic below.
 fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
     let of = |rods: bool| all.iter().filter(move |d| d.is_of_rods() == rods);
     let rows: Vec<_> = of(true)
@@ -267,7 +267,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
 }
 
 /// What is seen of the folds of film where the mesh is fine enough, on the finest regular mesh of the
-/// rectangle and on the finer octagons: they run along most corner lines, and along more than those of rods.
+/// rectangle and on the finer octagons: they run along most corner lines, and along more than folds of rods.
 /// Cloths of rods and of film by turns.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
     for pair in fine.chunks(2) {
@@ -285,8 +285,8 @@ fn check_corners(fine: &[&Draped]) -> Result<()> {
     Ok(())
 }
 
-/// What is seen of the folds: on the roundest cloth with the finest mesh those of film are more uniform than
-/// those of rods.
+/// What is seen of the folds: on the roundest cloth with the finest mesh folds of film are more uniform than
+/// folds of rods.
 fn check_folds(irregular: &[Draped]) -> Result<()> {
     let [.., rods, film] = irregular else {
         bail!("there are no irregular meshes");

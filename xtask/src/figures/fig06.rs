@@ -41,7 +41,7 @@ fn rule_h() -> Result<Drawing> {
     let v = [0.0; 3];
     let frame = SphericalFrame::along(&[1.0, 0.0, 0.0])?;
     let q = [0.85, 0.6];
-    // Drawn with the axes of the frame as those of the picture.
+    // Drawn with the axes of the frame as axes of the picture.
     let at = |q| {
         let p = place_h(&v, 1.0, &frame, q);
         frame.axes().map(|axis| dot(axis, p))

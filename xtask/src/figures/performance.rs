@@ -44,7 +44,7 @@ fn ours(figure: u8, effort: Effort) -> Result<FigureScene> {
     }
 }
 
-/// A form of the paper's scheme, and its scenes: one, or those of an ensemble of meshes.
+/// A form of the paper's scheme, and its scenes: one, or an ensemble of meshes.
 type Variant<T> = (&'static str, Vec<T>);
 
 /// The paper's scheme on a mesh, with ever more help: the last one is the scene file.

@@ -26,13 +26,13 @@ pub(super) struct CaseFile {
     pub(super) expected: String,
     /// The scene, relative to the file.
     scene: PathBuf,
-    /// Edits of the scene in quick reports, after those of the variants.
+    /// Edits of the scene in quick reports, after the edits of the variants.
     #[serde(default)]
     quick: Vec<String>,
-    /// Edits of the scene in full reports, after those of the variants.
+    /// Edits of the scene in full reports, after the edits of the variants.
     #[serde(default)]
     full: Vec<String>,
-    /// The runs are those of all entries; without entries there is one, of the scene as it is.
+    /// Each entry makes runs; without entries there is one run, of the scene as it is.
     #[serde(default)]
     variants: Vec<Variants>,
     check: Vec<Check>,

@@ -90,8 +90,8 @@ fn only(table: &Table, wanted: &Only) -> Table {
     })
 }
 
-/// Relative errors below this are those of a sheet that has come to rest to within a speed, and of answers
-/// with four digits.
+/// Relative errors below this come from a sheet that has come to rest to within a speed, and of answers with
+/// four digits.
 const FLOOR: f64 = 1e-4;
 
 /// Fitted power of the errors above [`FLOOR`], below which an error says nothing; nothing from fewer than
@@ -134,7 +134,7 @@ fn made(runs: &Table, of: &str, size: &str) -> Cell {
     }
 }
 
-/// The word before the name of a column, if it is one of those that [`made`] knows, and the name.
+/// The word before the name of a column, if [`made`] knows it, and the name.
 fn kind(of: &str) -> (&str, &str) {
     const KINDS: [&str; 8] = [
         "largest", "smallest", "mean", "median", "sum", "part", "counts", "power",
@@ -210,7 +210,7 @@ impl Required {
 }
 
 /// What every accepted step guarantees: lengths to within the limit of the strain that all models have by
-/// default, those of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
+/// default, lengths of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
 ///
 /// The norm of Green's strain `(l^2 / L^2 - 1) / 2` is below the limit `m`, so that an edge becomes shorter
 /// by a part of `1 - sqrt(1 - 2 m)` at most, and longer by less.

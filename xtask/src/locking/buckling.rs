@@ -182,7 +182,7 @@ mod tests {
         assert!((unit * 2.0_f64.sqrt() - 18.2).abs() < 0.05 && (unit * 2.0 - 25.7).abs() < 0.05);
     }
 
-    /// The energy of the strip lies between those of the two beams.
+    /// The energy of the strip lies between the energies of the two beams.
     #[test]
     fn the_energy_of_the_strip_lies_between_two_beams() {
         let strip = |k: f64, t: f64| {

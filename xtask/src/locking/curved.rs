@@ -101,7 +101,7 @@ fn crease(sheet: &Sheet) -> Vec<EdgeId> {
     t.edge_ids().filter(is_crease).collect()
 }
 
-/// Forces that bend the annulus to a saddle: up at both ends of the x axis, down at those of the y axis.
+/// Forces that bend the annulus to a saddle: up at both ends of the x axis, down at both ends of the y axis.
 fn nudge(sheet: &Sheet) -> Nudge {
     let rim = vertices(sheet, |[x, y, _]| x.hypot(y) > RADIUS + HALF - 1e-9);
     let unit = NUDGE * PAPER.rigidity / RADIUS / rim.len() as f64;
@@ -144,7 +144,7 @@ fn at(x: &[f64], v: VertexId) -> Vector3<f64> {
 
 /// The largest and the mean difference from 1 of curvature times `R sin(theta / 2)` over the vertices of the
 /// crease. The curvature is the angle between the two edges at a vertex over their mean length, the dihedral
-/// angle `theta` the mean of those of both.
+/// angle `theta` the mean of the angles of both.
 fn curvature_errors(sheet: &Sheet, crease: &[EdgeId], x: &[f64]) -> [f64; 2] {
     let t = sheet.topology();
     let mut errors = Vec::new();

@@ -206,7 +206,7 @@ mod tests {
     use super::*;
     use isosheet_dynamics::{At, MaterialReport as _, PlateBending, Potential};
 
-    /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
+    /// The angles about the centre add up to the disk and the wedge, the angles about all other vertices
     /// inside are 2 pi, and the pyramid is folded along four edges alone.
     #[test]
     fn pyramids_are_flat_but_for_the_centre() {

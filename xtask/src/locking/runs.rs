@@ -87,8 +87,8 @@ impl Ran {
 }
 
 impl Records<'_> {
-    /// The samples of all models, model by model, each in the order of the jobs. Those of a model are kept as
-    /// soon as they are complete.
+    /// The samples of all models, model by model, each in the order of the jobs. The samples of a model are
+    /// kept as soon as they are complete.
     ///
     /// # Errors
     /// Errors of [`Records::runs`].
@@ -116,7 +116,7 @@ impl Records<'_> {
     /// that rayon has, which are kept.
     ///
     /// # Errors
-    /// An error of a run, after which no further job begins; those of the output folder.
+    /// An error of a run, after which no further job begins; errors of the output folder.
     pub(super) fn runs<J: Sync, T: Serialize + DeserializeOwned + Send>(
         &self,
         name: &str,

@@ -19,36 +19,36 @@ material = \"office paper\"
 The name gives the sheet its mass, membrane stiffness, flexural rigidity, Poisson's ratio and largest strain,
 and makes it elastic. Keys beside it, such as `density` or `bending`, override these values.
 `isometry = \"rods\"` beside it makes a sheet of rigid rods with the mass and bending stiffness of the material.
-`isosheet check` prints the numbers. A metal or film that is not in the table is `material = { youngs =
-2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }`. It has the mass `density thickness`, the membrane
-stiffness `E h = youngs thickness` and the rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
+`isosheet check` prints the numbers. Another metal or film is `material = { youngs = 2.1e11, thickness = 5e-4,
+density = 7850, poisson = 0.3 }`. Its mass is `density thickness`, its membrane stiffness
+`E h = youngs thickness` and its rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
 
 In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` have these numbers, and
 `Material::isotropic` computes the numbers of a plate.
 
 **Know before use.** The numbers of metals and films are good to a few per cent for the thickness given, which
-is a common one. The numbers of paper, cloth and leather are typical: sorts differ by a factor of two, and the
-stiffness of paper falls with moisture. Bending tests give the rigidity of office paper, card, cloth and
-leather: their fibres move against one another, so that it does not follow from the thickness. The rigidity of
-the other papers is eight to nine tenths of the rigidity of a plate. The sources say which numbers are typical
-or assumed. The strain limit keeps strain invisible where a mesh is too coarse for its bends. Materials yield
-or tear at other strains.
+is a common one. The numbers of paper, cloth and leather are typical: sorts differ by a factor of two, and
+moisture softens paper. The rigidity of office paper, card, cloth and leather comes from bending tests: it
+does not follow from the thickness, since fibres move against one another. The rigidity of the other papers is
+eight to nine tenths of the rigidity of a plate. The sources say which numbers are typical or assumed. The
+strain limit keeps strain invisible where a mesh is too coarse for its bends; materials yield or tear at other
+strains.
 
 **Directions.** Paper is about twice as stiff along the direction in which it was made as across, and woven
-cloth is many times softer in shear than along its yarns. A sheet has directions if it names one, `direction =
-[1, 0, 0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth. The second table
-has the numbers. Without the key a sheet is alike in all directions, with the numbers of the first table, and
-cloth wraps round bodies less easily than it should. The limit of the strain of cloth with a direction is 20
-%, a shear of 16 degrees, in place of 5 %. The page [How a sheet bends](bends.md) has the formulas, and
-materials of your own.
+cloth is many times softer in shear than along its yarns. A sheet has directions if it names one,
+`direction = [1, 0, 0]`, in the frame of its mesh: the machine direction of paper, the warp of cloth. The
+second table has the numbers. Without the key a sheet has the numbers of the first table in all directions,
+and cloth wraps round bodies less easily than it should. Cloth with a direction has a strain limit of 20 %, a
+shear of 16 degrees, in place of 5 %. The page [How a sheet bends](bends.md) has the formulas, and materials
+of your own.
 
-**Yield.** A material with a moment `M_y` yields in bending if a scene sets `sheet.yield = {}`. Bends beyond
-the curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. [The theory](theory.md)
-has the formulas. The moment of yield varies more than all other numbers, for a metal with alloy and temper.
-The key `yield = { moment = ..., hardening = ... }` overrides it, and `yield_stress` among the numbers of a
-material computes `M_y = yield_stress thickness^2 / 4`. At `M_y` the whole thickness of a section has yielded.
-With `yield = { layers = 4 }` bends stay from two thirds of `M_y` on, as in a section that yields from its
-faces inwards.
+**Yield.** A material with a moment `M_y` yields in bending if a scene sets `sheet.yield = {}`: sharp bends
+stay, and spring back by the curvature `M_y / D`. `H` is the hardening. A section yields from its faces
+inwards, from two thirds of `M_y` on; at `M_y` its whole thickness has yielded. By default each half of it has
+11 layers for this. `yield = { layers = 4 }` is coarser; with `layers = 1` the whole thickness yields at once,
+at `M_y`. [The theory](theory.md) has the formulas. `M_y` varies more than all other numbers, for a metal with
+alloy and temper. The key `yield = { moment = ..., hardening = ... }` overrides it, and `yield_stress` among
+the numbers of a material computes `M_y = yield_stress thickness^2 / 4`.
 
 ";
 

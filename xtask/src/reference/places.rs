@@ -94,7 +94,7 @@ impl Places {
     }
 }
 
-/// Collects a part and those that its keys refer to, each once.
+/// Collects a part and the parts that its keys refer to, each once.
 fn reach(parts: &Value, name: &str, found: &mut Vec<String>) {
     if found.iter().any(|other| other == name) {
         return;

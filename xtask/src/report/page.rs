@@ -25,7 +25,7 @@ pub(crate) struct Page {
     /// The title of the window.
     pub(crate) title: &'static str,
     pub(crate) heading: &'static str,
-    /// Rules of style beside those of all pages.
+    /// Rules of style beside the rules of all pages.
     pub(crate) style: &'static str,
     /// Parts that are not on the page, as another build of the program made them.
     pub(crate) left_out: Vec<String>,

@@ -47,7 +47,8 @@ impl<T: Serialize + DeserializeOwned + Send> Ensemble<T> {
     /// are.
     ///
     /// # Errors
-    /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C; those of the simulation and of `measure`.
+    /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C; errors of the simulation and of
+    /// `measure`.
     pub(crate) fn of(
         store: &Store,
         run: &Run,

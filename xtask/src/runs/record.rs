@@ -1,4 +1,4 @@
-//! Runs of scenes as figures are made of them: those of `isosheet simulate`, made once in DIR/runs.
+//! Runs of scenes of which figures are made, as `isosheet simulate` makes them, made once in DIR/runs.
 
 use super::{Course, FigureScene};
 use crate::interrupt;
@@ -167,7 +167,7 @@ impl Run {
     /// An up-to-date run of the scene, which is made now when there is none.
     ///
     /// # Errors
-    /// [`Interrupted`](interrupt::Interrupted) after Ctrl-C; those of the simulation.
+    /// [`Interrupted`](interrupt::Interrupted) after Ctrl-C; errors of the simulation.
     pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
         let (summary, times, recorded) = kept(store, &scene)?;
         Self::new(scene, &summary, times, recorded)
@@ -176,7 +176,7 @@ impl Run {
     /// A run that is made now and of which nothing is kept but what the caller takes from it.
     ///
     /// # Errors
-    /// As [`Run::of`]; those of temporary files.
+    /// As [`Run::of`]; errors of temporary files.
     pub(super) fn passing(scene: FigureScene) -> Result<Self> {
         let folder = tempfile::tempdir()?;
         let (summary, times) = simulate(&scene, folder.path(), &mut || ())?;

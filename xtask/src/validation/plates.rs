@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn the_series_is_that_of_a_known_plate() {
         let [along, across, ..] = ORTHOTROPIC;
-        // Of a plate that is four times as stiff along as across, between those of its two rigidities.
+        // Of a plate that is four times as stiff along as across, between the answers for its two rigidities.
         assert!(navier() < SIMPLE / across && navier() > SIMPLE / along);
     }
 }

@@ -25,7 +25,7 @@ const STEPS: f64 = 400.0;
 /// A sheet is at rest when nothing moves by more than this part of its size in a step.
 const STILL: f64 = 1e-6;
 
-/// The velocity that is left after a step, of that before: steps are those of a descent, without momentum.
+/// The part of the velocity that a step leaves: steps are steps of a descent, without momentum.
 const LEFT: f64 = 1e-4;
 
 impl Rest {

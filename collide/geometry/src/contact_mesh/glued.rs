@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 /// Which vertices of a mesh count as one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Glued {
-    /// Of each vertex the lowest number among those that it is glued to, its own included.
+    /// For each vertex the lowest number of it and of the vertices that it is glued to.
     lowest: Vec<u32>,
     /// Edges between glued vertices that both sides of a seam have, by these numbers, the lower one first.
     shared: BTreeSet<[u32; 2]>,

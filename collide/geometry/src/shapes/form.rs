@@ -123,7 +123,7 @@ pub trait Form: Debug + Send + Sync {
     /// The primitives by which faces and edges of a mesh, not only its vertices, are kept away, with so many
     /// sides of whatever is a circle and is not met exactly. `None` for a half-space, from which a flat face
     /// is away if its corners are. Primitives of a shape that is not [convex](Form::is_convex) have faces and
-    /// no radius. By default those of the triangles.
+    /// no radius. By default the primitives of the triangles.
     ///
     /// # Errors
     /// [`ShapeError::Segments`] for a number of sides that the shape cannot have.

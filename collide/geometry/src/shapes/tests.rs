@@ -234,7 +234,7 @@ fn second_moments(mesh: &Triangles) -> Matrix3<f64> {
     mesh.faces.iter().map(of).sum()
 }
 
-/// Bounds and moments are those of triangles with many sides, which are inside of the shape.
+/// Bounds and moments agree with triangles with many sides, which are inside of the shape.
 #[test]
 fn bounds_and_moments_are_those_of_the_triangles() {
     let shapes = [

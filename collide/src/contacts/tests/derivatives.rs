@@ -176,7 +176,7 @@ fn bodies_match_differences() {
     }
 }
 
-/// A sheet whose edges lie along those of a box below, up to a twist.
+/// A sheet whose edges lie along the edges of a box below, up to a twist.
 fn aligned(twist: f64, friction: Coefficients) -> (Step, Vec<f64>) {
     let sheet = sheet(1);
     let model = model(&sheet);

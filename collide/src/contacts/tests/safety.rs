@@ -97,7 +97,7 @@ proptest! {
                 let b = a * f64::from(k) / 8.0;
                 let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + b * d).collect();
                 prop_assert!(crossings(&step.contacts.mesh, &y).is_empty());
-                // The pairs found are those of the whole motion.
+                // The pairs found belong to the whole motion.
                 let gap = step.gap(&y);
                 prop_assert!(gap > 0.0);
                 let all = every_gap(&step.contacts, &y);

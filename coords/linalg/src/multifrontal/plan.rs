@@ -34,7 +34,7 @@ pub(super) struct Front {
 }
 
 impl Front {
-    /// Multiplications, those of square roots and divisions left out.
+    /// Multiplications, without square roots and divisions.
     fn operations(&self) -> f64 {
         let (c, r) = (self.columns as f64, self.rows as f64);
         c * (c * c / 6.0 + c * r / 2.0 + r * r / 2.0)
@@ -317,7 +317,7 @@ impl Plan {
     }
 
     /// Places the updates of a subtree, from the end of the room on, as on a stack: each is computed above
-    /// those of its children, and then takes their place. Returns the height of the stack.
+    /// the updates of its children, and then takes their place. Returns the height of the stack.
     fn stack(&mut self, fronts: Range<usize>) -> usize {
         let (mut top, mut most) = (self.room, self.room);
         for s in fronts {

@@ -19,7 +19,7 @@ pub(super) trait Job<const N: usize>: Sync {
     /// Where the parts of a subtree begin.
     fn begins(&self, subtree: &Subtree) -> [usize; N];
 
-    /// Does it. The parts contain those of the subtree.
+    /// Does it. The parts contain the parts of the subtree.
     fn run(&self, subtree: &Subtree, parts: [FrontValues<'_>; N]) -> Result<(), Self::Error>;
 
     /// Does it to all subtrees of a plan, with the same result for any number of threads. (A thread that

@@ -125,7 +125,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
-/// Solutions are those of the matrix, the same to the bit for any number of threads.
+/// Solutions solve the system, with the same bits for any number of threads.
 #[test]
 fn solutions_have_the_same_bits_on_any_number_of_threads() {
     let (pattern, values) = grids(&[80, 12], 3);

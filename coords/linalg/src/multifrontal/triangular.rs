@@ -110,7 +110,8 @@ impl<'a> Supernode<'a> {
         }
     }
 
-    /// Solves for the supernode's own unknowns in `L^T x = b`, those of the rows below being known.
+    /// Solves for the supernode's own unknowns in `L^T x = b`, where the unknowns of the rows below are
+    /// known.
     #[inline(always)]
     fn backward(&self, x: &mut [f64], known: &mut [f64]) {
         let known = &mut known[..self.rows.len()];

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 ///
 /// A thread without work falls asleep within some 20 microseconds, and to wake it takes 0.1 ms: much of the
 /// time that the pieces of an iteration take. Threads that stay awake look for work, and let other programs
-/// run where there is none for longer; they use processor time. Those that keep others awake themselves, as
-/// in ensembles of runs, do not stay for anyone else.
+/// run where there is none for longer; they use processor time. A thread that keeps others awake itself, as
+/// in ensembles of runs, does not stay awake for anyone else.
 #[derive(Debug)]
 pub struct Awake {
     /// Nothing where the thread has kept others awake before.

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// faces that are a hundredth of the sheet, below any fold that is seen.
 pub const FLAT: f64 = 1e-4;
 
-/// Stiffness, beside that of the edges, of what brings vertices back that no edge holds: those of a rigid
+/// Stiffness, beside that of the edges, of what brings vertices back that no edge holds: vertices of a rigid
 /// motion, and of parts beyond hinges that may turn.
 const RETURN: f64 = 1e-9;
 
@@ -54,7 +54,7 @@ pub fn folding_from_flat(
         };
         let vertices = [a, b, left, right];
         let fold = Fold::at(x, &vertices);
-        // All faces of a flat sheet have this direction; those that are folded over have its opposite.
+        // All faces of a flat sheet have this direction; faces that are folded over have its opposite.
         let normal = fold.normal();
         if plane == Vector3::zeros() {
             plane = normal;
@@ -95,8 +95,7 @@ mod tests {
     use isosheet_mesh::Sheet;
     use isosheet_mesh::generate::{FoldAssignment, miura};
 
-    /// The first-order angles of Miura's pattern are those of its exact motion: every crease turns to its
-    /// side.
+    /// The first-order angles of Miura's pattern agree with its exact motion: every crease turns to its side.
     #[test]
     fn creases_turn_to_their_sides() {
         let pattern = miura(4, 4, 0.05, 0.05, 60.0_f64.to_radians()).unwrap();

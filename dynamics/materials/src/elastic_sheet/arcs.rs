@@ -21,9 +21,9 @@ pub(super) struct Arcs {
     /// The bends of faces that are curved without stress; nothing where all are flat.
     at_rest: Vec<Bend>,
     around: Surroundings,
-    /// While bends are remembered, the stresses of the faces, and those that their material alone would have.
+    /// While bends are remembered, the stresses of the faces, and the stresses of their material alone.
     stresses: Room<Vec<[Vector3<f64>; 2]>>,
-    /// The numbers of its coordinates in the union, and of its faces among those that are elastic.
+    /// The numbers of its coordinates in the union, and of its faces among the elastic ones.
     coordinates: Range<usize>,
     faces: Range<usize>,
 }

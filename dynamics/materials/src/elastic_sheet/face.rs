@@ -47,7 +47,7 @@ pub(super) struct Strained {
     vectors: [Vector3<f64>; 3],
     /// The strain against the grown lengths, by the components of [`Face::strains`].
     strain: Vector3<f64>,
-    /// Length errors beyond those of the chords of arcs, m2.
+    /// Length errors beyond the chords of arcs, m2.
     beyond: Vector3<f64>,
     slack: Slack,
     pull: Pull,
@@ -180,9 +180,8 @@ impl Face {
         Slack::of_bend(self.rigidity, size, bend.squared)
     }
 
-    /// The stress against the lengths at rest, newtons per metre, by components `(s_11, sqrt(2) s_12, s_22)`
-    /// as those of
-    /// [`Face::strains`].
+    /// The stress against the lengths at rest, newtons per metre, by components `(s_11, sqrt(2) s_12, s_22)`,
+    /// as in [`Face::strains`].
     pub(super) fn stress(&self, here: At<'_>, bend: &Bend) -> Vector3<f64> {
         let at = self.at(here, bend);
         self.edge_squares.tr_mul(&self.law_at(&at).slope())

@@ -29,7 +29,7 @@ pub(super) enum Law {
     Orthotropic {
         /// `c_i`, N/m.
         stiffnesses: Vector3<f64>,
-        /// The components `y` by those of a strain.
+        /// The components `y` by the components of a strain.
         modes: Matrix3<f64>,
     },
 }
@@ -68,7 +68,8 @@ impl Law {
         norm: Matrix3::from_array_storage(nalgebra::ArrayStorage([[0.0; 3]; 3])),
     };
 
-    /// This law in other numbers for the strain, from which the matrix `numbers` makes those of this law.
+    /// This law in other numbers for the strain, from which the matrix `numbers` makes the numbers of this
+    /// law.
     pub(super) fn by(self, numbers: &Matrix3<f64>) -> Self {
         match self {
             Self::Isotropic { stiffness, norm } => Self::Isotropic {

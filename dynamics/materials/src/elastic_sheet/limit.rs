@@ -71,8 +71,8 @@ impl StrainLimit {
         }
     }
 
-    /// First and second derivative by the square of the strain, joules per square metre; those of the
-    /// barrier are not numbers at the limit and beyond.
+    /// First and second derivative by the square of the strain, joules per square metre; the derivatives of
+    /// the barrier are not numbers at the limit and beyond.
     pub(super) fn derivatives(&self, squared: f64) -> [f64; 2] {
         if let Law::Excess = self.law {
             let strain = squared.sqrt();

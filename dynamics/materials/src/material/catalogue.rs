@@ -28,7 +28,7 @@ pub struct NamedMaterial {
 pub struct UnknownMaterial {
     /// The name that was asked for.
     pub name: String,
-    /// The names of all materials, those that are most alike first.
+    /// The names of all materials, the most similar ones first.
     pub names: Vec<&'static str>,
 }
 

@@ -7,7 +7,8 @@ use nalgebra::{DMatrix, Vector2, Vector3};
 use std::f64::consts::SQRT_2;
 
 /// Smallest singular value of a least-squares fit, in units of the mean length of the edges around, below
-/// which further vertices join the fit: those that lie nearly on a conic determine no quadratic polynomial.
+/// which further vertices join the fit: vertices that lie nearly on a conic determine no quadratic
+/// polynomial.
 const LEAST_SINGULAR: f64 = 0.04;
 /// Largest number of rings of faces around an edge that take part in a fit.
 const MAX_RINGS: usize = 4;

@@ -137,8 +137,8 @@ fn eigenvalues(a: DMatrix<f64>, b: DMatrix<f64>) -> Vec<f64> {
     values
 }
 
-/// Errors below which those of the reference count: Ritz's values are bounds from above, up to 0.4 % above
-/// what all meshes of 16 cells across agree on (`cargo xtask validation`).
+/// Errors below which the errors of the reference count: Ritz's values are bounds from above, up to 0.4 %
+/// above what all meshes of 16 cells across agree on (`cargo xtask validation`).
 const REFERENCE: f64 = 5e-3;
 
 /// The first frequencies of a square cantilever plate with Poisson's ratio 0.3, `omega a^2 sqrt(rho / D)`:
@@ -198,8 +198,8 @@ fn a_narrow_strip_bends_as_a_beam_does() {
 }
 
 /// A plate on edge, clamped at one end, bends sidewards under its weight from `Gamma = w g L^3 / D` on, with
-/// Poisson's ratio 0.3: the values of Ritz's method for three widths. The stresses are those of the elastic
-/// sheet in its plane.
+/// Poisson's ratio 0.3: the values of Ritz's method for three widths. The elastic sheet has the stresses in
+/// its plane.
 #[test]
 fn a_plate_on_edge_buckles_where_ritz_says() {
     for (width, cells, exact) in [

@@ -19,12 +19,12 @@ pub(super) const POINTS: usize = 3;
 
 /// How much more than the polynomials the second derivatives vary in a face, the root of 5/3.
 ///
-/// Second derivatives of a wave are smoothed by the fits: on a strip with the spacing `h`, both those of a
-/// cell and those of the polynomials are `w'' + 5/24 h^2 w''''` in the middle of a cell, so that their
-/// squares integrate to `5/12 h^2 |w'''|^2` less than those of `w''`. The polynomials at the two ends of a
-/// cell differ by `h w'''`, and their squared deviations from the mean are `1/4 h^2 |w'''|^2`. On triangles
-/// the factor that gives the energy of waves to fourth order is 1.5 to 5.3 in place of 5/3, by mesh and
-/// direction (on the average 2.9); larger ones than 5/3 make supported plates on coarse meshes too stiff:
+/// Second derivatives of a wave are smoothed by the fits: on a strip with the spacing `h`, the derivatives of
+/// a cell and of the polynomials are both `w'' + 5/24 h^2 w''''` in the middle of a cell, so that their
+/// squares integrate to `5/12 h^2 |w'''|^2` less than the squares of `w''`. The polynomials at the two ends
+/// of a cell differ by `h w'''`, and their squared deviations from the mean are `1/4 h^2 |w'''|^2`. On
+/// triangles the factor that gives the energy of waves to fourth order is 1.5 to 5.3 in place of 5/3, by mesh
+/// and direction (on the average 2.9); larger ones than 5/3 make supported plates on coarse meshes too stiff:
 /// largest errors of the deflection of square plates, simply supported, isotropic and orthotropic, and
 /// clamped, on six meshes of 8 squares (`cargo xtask validation`), %:
 ///
@@ -40,9 +40,9 @@ pub(super) fn face_of(point: usize) -> usize {
     point / POINTS
 }
 
-/// For each point the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, the three components of a weight
-/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, `A` the part of the area of the face
-/// that is the point's, and `R` the root of the law of the plate there, see [`Roots`].
+/// For each point the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, where the three components of a
+/// weight are the components of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, `A` the part of the area
+/// of the face that is the point's, and `R` the root of the law of the plate there, see [`Roots`].
 #[derive(Debug, Clone)]
 pub(super) struct Stencils {
     /// Where the entries of each point begin, and their number.
@@ -251,8 +251,8 @@ fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     (roots.rigidity(face) * area).sqrt()
 }
 
-/// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its
-/// edges; those that clamps hold apart.
+/// The second derivatives at the points of a face, from the slopes at its edges; slopes that clamps hold are
+/// apart. Their mean is the mean over the face.
 fn face_weights(
     sheet: &Sheet,
     fits: &[Option<Fit>],

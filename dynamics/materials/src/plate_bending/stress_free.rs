@@ -16,8 +16,8 @@ use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The curvatures that the points of a plate have without moments, natural ones and the plastic ones of a
-/// plate that yields. Curvatures are those of the stencils, `R k` with the root `R` of the law ([`Roots`]),
-/// so that a norm is that of the elastic energy.
+/// plate that yields. Curvatures come from the stencils, `R k` with the root `R` of the law ([`Roots`]), so
+/// that a norm is that of the elastic energy.
 #[derive(Debug)]
 pub(super) struct StressFreeCurvature {
     roots: Roots,
@@ -119,8 +119,8 @@ pub(super) struct BentPoint {
 }
 
 impl BentPoint {
-    /// The derivatives of the energy by the corners, as far as they are those of the normal: with the hats
-    /// `g_j` it is `dn = -sum_j g_j (n . dx_j)`.
+    /// The derivatives of the energy by the corners, as far as they come from the normal: with the hats `g_j`
+    /// it is `dn = -sum_j g_j (n . dx_j)`.
     pub(super) fn turning_forces(&self) -> [(VertexId, Vector3<f64>); 3] {
         let moved = self.elastic * self.stress_free;
         let force = |k: usize| self.normal * self.hats[k].dot(&moved);
@@ -226,7 +226,7 @@ impl StressFreeCurvature {
         count * point..count * (point + 1)
     }
 
-    /// The plastic curvatures of the faces as matrices, means of those of their points in a memory, 1/m.
+    /// The plastic curvatures of the faces as matrices, means over their points in a memory, 1/m.
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
         let matrix = move |face| {
             let yields = self.yields_of(POINTS * face)?;

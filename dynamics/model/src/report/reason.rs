@@ -20,7 +20,7 @@ pub enum Reason {
     AboveStart,
     /// The linear algebra failed.
     LinearAlgebra,
-    /// Loads that follow the sheet are not those of its place at the end of the step.
+    /// Loads that follow the sheet differ from the loads at its place at the end of the step.
     UnsettledLoads,
     /// The watch of the step or the limit of factorisations ended the iteration.
     Ended,

@@ -45,7 +45,7 @@ fn the_tetrahedron_has_mass_centre_and_moments_of_the_body() {
     assert!((sum - Vector3::from(point)).norm() < 1e-14);
 }
 
-/// Whatever corners carry a body, its kinetic energy and its angular momentum are those of its mass, centre
+/// Whatever corners carry a body, its kinetic energy and its angular momentum follow from its mass, centre
 /// and inertia: of a block and of a plate, with corners at joints near and far, in the middle too.
 #[test]
 fn any_tetrahedron_has_the_energy_and_the_momentum_of_the_body() {

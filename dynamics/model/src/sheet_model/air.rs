@@ -121,8 +121,8 @@ impl Wind {
 /// ```
 ///
 /// in newtons, along the wind `w` where the sheet is at rest; a third of it acts on each corner. The other
-/// unit normal, `-n`, gives the same force: the coefficients are those of a plate with its two sides, and
-/// each face counts once.
+/// unit normal, `-n`, gives the same force: the coefficients are for a plate with its two sides, and each
+/// face counts once.
 ///
 /// That the normal force depends on the normal component of the velocity alone is the cross-flow principle
 /// (Hoerner, "Fluid-dynamic drag", 1965; Taylor, Proc. R. Soc. A 214, 1952, for slender bodies), which models

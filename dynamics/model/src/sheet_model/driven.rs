@@ -8,7 +8,7 @@ impl SheetModel {
     /// with masses of sheets notices.
     pub const DRIVEN_MASS: f64 = f64::MIN_POSITIVE;
 
-    /// Says that the vertices from this one on are those of surfaces in prescribed motion, such as obstacles
+    /// Says that the vertices from this one on belong to surfaces in prescribed motion, such as obstacles
     /// that deform: their edges have no length to keep, neither as rods nor in the strain of the sheets, and
     /// their [masses](SheetModel::DRIVEN_MASS) do not count in the mean of all. All of them have to be
     /// [pinned](SheetModel::with_moving_pin). Comes after [`SheetModel::with_bodies_from`], which is called

@@ -14,11 +14,11 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Part of the largest load by which loads may differ from those of the place of the sheet before they are
-/// renewed.
+/// Part of the largest load by which loads may differ from the loads at the place of the sheet before they
+/// are renewed.
 const SETTLED: f64 = 1e-3;
-/// Part of the largest load by which loads may differ from those of the place of the sheet at the end of a
-/// step; beyond it the step is refused, as it takes more than the updates that a step has.
+/// Part of the largest load by which loads may differ from the loads at the place of the sheet at the end of
+/// a step; beyond it the step is refused, as it takes more than the updates that a step has.
 const UNSETTLED: f64 = 0.05;
 
 /// The corners of a face, in metres, or the forces on them, in newtons.
@@ -76,8 +76,8 @@ impl<L: FaceLoad> ImplicitForce for Follower<L> {
 ///
 /// less that at the start of the step, with the forces `f` on the corners of each face and their derivative
 /// `J` at lagged positions `y`. Loads that follow a sheet have no energy as a rule: the part of `J` that has
-/// none lags behind. The positions `y` are those that the velocities at the start lead to, and are renewed
-/// where the minimisation has converged until `U` has the forces of the end of the step.
+/// none lags behind. The positions `y` are first where the velocities at the start lead. They are renewed
+/// where the minimisation has converged, until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FollowerStep<L> {
     load: Follower<L>,
@@ -159,7 +159,8 @@ impl<L: FaceLoad> FollowerStep<L> {
             .extend(numbers.map(|number| Lagged::new(load, number, t, x)));
     }
 
-    /// By how much the forces at free vertices are not those of an iterate, as a part of the largest.
+    /// By how much the forces at free vertices differ from the forces at an iterate, as a part of the
+    /// largest.
     fn error(&mut self, at: Iterate<'_>) -> f64 {
         let mut here = std::mem::take(&mut self.force);
         here.clear();

@@ -118,7 +118,7 @@ impl SheetModel {
     /// [`GasError`].
     ///
     /// # Panics
-    /// If `x` is not of length `3V` or the faces are those of another mesh.
+    /// If `x` is not of length `3V` or the faces belong to another mesh.
     pub fn with_gas(self, faces: LoadedFaces, gas: Gas, x: &[f64]) -> Result<Self, GasError> {
         Ok(self.with_potential(EnclosedGas::new(&faces, gas, x)?))
     }
@@ -153,7 +153,7 @@ impl EnclosedGas {
     /// [`GasError`].
     ///
     /// # Panics
-    /// If `x` is not of length `3V` or the faces are those of another mesh.
+    /// If `x` is not of length `3V` or the faces belong to another mesh.
     pub fn new(faces: &LoadedFaces, gas: Gas, x: &[f64]) -> Result<Self, GasError> {
         for (name, value) in [
             ("ambient pressure", gas.ambient),

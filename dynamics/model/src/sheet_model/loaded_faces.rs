@@ -29,7 +29,7 @@ pub enum LoadedFacesError {
         /// Number of vertices.
         vertex_count: usize,
     },
-    /// The faces have no two sides, as those of a Moebius band.
+    /// The faces have no two sides, as on a Moebius band.
     #[error("the faces around the edge from {from} to {to} have no common side")]
     OneSided {
         /// Where an edge of the seam begins.
@@ -280,7 +280,7 @@ impl Parts {
     }
 }
 
-/// Of each vertex the smallest number of those that it is joined to.
+/// For each vertex the smallest number of the vertices that it is joined to.
 fn places(vertex_count: usize, joined: &[[VertexId; 2]]) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..vertex_count).collect();
     let root = |parent: &[usize], mut v: usize| {

@@ -182,7 +182,7 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
-    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these
+    /// [`ElasticSheet`]; for the [union](ElasticSheet::union) of some of several sheets, the rods of these
     /// sheets.
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does
@@ -247,11 +247,11 @@ impl SheetModel {
     /// any order; what is not finite is left out), see `Profile::breaks`. Scenes do so for all their
     /// functions of time.
     ///
-    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and
-    /// those that look back begin anew: a formula of second order over a jump of the acceleration `a` leaves
-    /// an error `h a / 2` in the velocities. Of breaks that follow one another within a step the first one
-    /// counts, since the steps do not resolve the others: keyframes of a motion that was sampled as often
-    /// cost nothing.
+    /// Methods without a chart end a sub-step there and give pins the velocities of the motion that begins. A
+    /// method that uses earlier steps begins anew: a formula of second order over a jump of the acceleration
+    /// `a` leaves an error `h a / 2` in the velocities. Of breaks that follow one another within a step the
+    /// first one counts, since the steps do not resolve the others: keyframes of a motion that was sampled as
+    /// often cost nothing.
     #[must_use]
     pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks = self.breaks.and(times);
@@ -273,7 +273,7 @@ impl SheetModel {
         self.implicit.iter().map(Box::as_ref)
     }
 
-    /// Says that the vertices from this one on are those of [rigid bodies](crate::RigidBody): neither the
+    /// Says that the vertices from this one on belong to [rigid bodies](crate::RigidBody): neither the
     /// velocity damping nor [air](crate::Air) that is added later acts on them, and their edges say nothing
     /// about the lengths of the sheets.
     ///
@@ -369,7 +369,7 @@ impl SheetModel {
         &self.forces
     }
 
-    /// The number of vertices of sheets, before those of rigid bodies.
+    /// The number of vertices of sheets; vertices of rigid bodies come after them.
     pub fn sheet_vertices(&self) -> usize {
         self.sheet_vertices
     }

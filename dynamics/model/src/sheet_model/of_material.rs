@@ -117,9 +117,9 @@ impl SheetModel {
 }
 
 impl SheetOfMaterial<'_> {
-    /// Pins vertices where they are, besides those of earlier calls. Where all corners of a face are among
-    /// them the sheet is clamped: it leaves the clamp with the slope of that face
-    /// ([`PlateBending::clamped`]). Single vertices and single lines of vertices are hinges.
+    /// Pins vertices where they are, in addition to earlier calls. Where all corners of a face are among them
+    /// the sheet is clamped: it leaves the clamp with the slope of that face ([`PlateBending::clamped`]).
+    /// Single vertices and single lines of vertices are hinges.
     pub fn clamped(mut self, vertices: &[VertexId]) -> Self {
         self.clamps.extend(vertices);
         self
@@ -139,8 +139,8 @@ impl SheetOfMaterial<'_> {
         self
     }
 
-    /// Interrupts the bending stiffness at edges, besides those of earlier calls, where the springs of
-    /// creases take its place ([`PlateBending::creased`]).
+    /// Interrupts the bending stiffness at edges, in addition to earlier calls, where the springs of creases
+    /// take its place ([`PlateBending::creased`]).
     pub fn creased(mut self, edges: &[EdgeId]) -> Self {
         self.creases.extend(edges);
         self

@@ -97,7 +97,7 @@ impl Volume {
         self.vertices.iter().copied().zip(sums).collect()
     }
 
-    /// Adds `scale` times a part of the second derivatives, which are those of closed seams.
+    /// Adds `scale` times a part of the second derivatives, which belong to closed seams.
     ///
     /// The block of an edge from `a` to `b` is that of the cross product with `w = s (r - l) / 6`, between
     /// what is opposite to it on both sides. Its eigenvalues are `|w|`, `-|w|` and zero, each of them twice:

@@ -614,7 +614,7 @@ impl Lagrangian {
         false
     }
 
-    /// Makes the multipliers those of the same forces in steps that are so many times as long.
+    /// Scales the multipliers to equal forces in steps that are so many times as long.
     pub(super) fn scale_multipliers(&mut self, longer: f64) {
         let ratio = longer * longer;
         self.multipliers.iter_mut().for_each(|l| *l *= ratio);

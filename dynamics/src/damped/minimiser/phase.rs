@@ -79,7 +79,7 @@ pub(super) struct Phase {
     pub(super) iterations: usize,
     /// Largest number of iterations in all.
     pub(super) all_iterations: usize,
-    /// Largest number of halvings of a search direction; those of the last phases end at round-off.
+    /// Largest number of halvings of a search direction; the last phases end at round-off.
     pub(super) halvings: usize,
     /// Rounds of the method of multipliers.
     pub(super) rounds: usize,

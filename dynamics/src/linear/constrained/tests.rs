@@ -72,8 +72,8 @@ fn solve(
     }
 }
 
-/// Largest entries of `M dx - G^T L - f` and of `G dx - c`, relative to those of `f` and `c`: both vanish
-/// for the solution of the saddle-point system and for nothing else.
+/// Largest entries of `M dx - G^T L - f` and of `G dx - c`, relative to the entries of `f` and `c`: both
+/// vanish for the solution of the saddle-point system and for nothing else.
 fn residuals(
     model: &SheetModel,
     x: &[f64],

@@ -4,7 +4,7 @@ use isosheet_linalg::LinalgError;
 use isosheet_materials::vectors::dot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// The terms `sum_k c_k v_k v_k^T` with `c_k > 0` of a symmetric matrix, dense but of a low rank: those of
+/// The terms `sum_k c_k v_k v_k^T` with `c_k > 0` of a symmetric matrix, dense but of a low rank: from
 /// energies of one quantity of all vertices, such as a volume. With `V = [v_k]` and `C = diag(c_k)`
 ///
 /// ```text

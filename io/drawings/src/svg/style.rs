@@ -38,7 +38,7 @@ pub(super) struct Style {
     pub(super) stroke_opacity: f64,
     /// The opacity of areas alone.
     pub(super) fill_opacity: f64,
-    /// The product of those of all groups.
+    /// The product of the opacities of all groups.
     pub(super) group_opacity: f64,
     pub(super) visible: bool,
     /// Whether it is shown at all, with all that is in it.

@@ -14,7 +14,7 @@ pub enum GalleryError {
         /// Where they were looked for.
         folders: Vec<PathBuf>,
     },
-    /// The folder holds files that are not those of a gallery.
+    /// The folder holds files that do not belong to a gallery.
     #[error("{} holds files and is not the folder of a gallery", folder.display())]
     Foreign {
         /// The folder.

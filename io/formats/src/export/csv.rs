@@ -34,7 +34,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
     Ok(vec![path.to_owned()])
 }
 
-/// The columns of a field in the table, which has those of vertices.
+/// The columns of a field in the table, which has the fields of vertices.
 fn columns(support: FieldSupport) -> Option<usize> {
     match support {
         FieldSupport::Vertices => Some(1),
@@ -43,7 +43,7 @@ fn columns(support: FieldSupport) -> Option<usize> {
     }
 }
 
-/// The names of the columns: those of a vector end in `_x`, `_y`, `_z`.
+/// The names of the columns; for a vector they end in `_x`, `_y`, `_z`.
 fn names(series: &Series<'_>) -> Vec<String> {
     let mut names = ["frame", "t", "vertex", "x", "y", "z"]
         .map(str::to_owned)

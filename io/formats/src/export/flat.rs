@@ -194,7 +194,7 @@ mod tests {
         }
     }
 
-    /// The lengths of a tetrahedron without its bottom fit no plane, and neither do those of a ring.
+    /// The lengths of a tetrahedron without its bottom fit no plane, and neither do the lengths of a ring.
     #[test]
     fn what_cannot_be_flat_has_no_places() {
         let x = [0., 0., 1., 1., 0., 0., -0.5, 0.8, 0., -0.5, -0.8, 0.];

@@ -45,7 +45,7 @@ struct FoldFileFrame<'a> {
     #[serde(rename = "isosheet:time", skip_serializing_if = "Option::is_none")]
     time: Option<f64>,
     vertices_coords: &'a [[f64; 3]],
-    /// Left out where they are those of the first frame.
+    /// Left out where they agree with the first frame.
     #[serde(rename = "edges_foldAngle", skip_serializing_if = "Vec::is_empty")]
     fold_angles: Vec<f64>,
 }
@@ -54,7 +54,7 @@ const FOLDED: &[&str] = &["foldedForm"];
 const PATTERN: &[&str] = &["creasePattern"];
 
 /// Writes a series: the first frame as key frame, the others with their positions and fold angles. Fold
-/// angles are those of the positions, in degrees.
+/// angles follow from the positions, in degrees.
 ///
 /// Edges of the boundary are `B`; the others are `M`, `V` and `F` as the series knows, and `U` otherwise.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
@@ -99,7 +99,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
 }
 
 /// Writes one mesh with the creases that were read, and the lines of a drawing that they follow. Their fold
-/// angles are those of the file they were read from. Where it has none, mountains and valleys of a flat
+/// angles are taken from the file they were read from. Where it has none, mountains and valleys of a flat
 /// pattern fold by 180 degrees, flat edges by 0, and the angle of others is null. Edges that were not read
 /// are `B` if they have one face, and `U` otherwise.
 pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {

@@ -35,7 +35,7 @@ impl<'a> Moving<'a> {
 /// A sheet that moves, as a mesh of its own.
 pub(super) struct MovingSheet<'a> {
     pub(super) name: &'a str,
-    /// The range of its vertices among those of all sheets.
+    /// The range of its vertices among the vertices of all sheets.
     vertices: Range<usize>,
     /// Its faces, by the numbers of its own vertices.
     pub(super) faces: Vec<[u32; 3]>,
@@ -63,7 +63,7 @@ impl<'a> MovingSheet<'a> {
         }
     }
 
-    /// The values of its vertices among those of all vertices.
+    /// The values of its vertices among the values of all vertices.
     pub(super) fn own<'b, T>(&self, values: &'b [T]) -> &'b [T] {
         &values[self.vertices.clone()]
     }

@@ -90,7 +90,7 @@ pub struct SeriesField {
     /// What the values belong to.
     pub support: FieldSupport,
     /// One value (of vectors three) for each vertex, edge or face of each frame of the trajectory, frame
-    /// after frame, also of those that are not written.
+    /// after frame, including the frames that are not written.
     pub values: Vec<f64>,
 }
 
@@ -228,8 +228,8 @@ impl<'a> Series<'a> {
         &self.bodies
     }
 
-    /// The frames of those that are written in which bodies are placed anew: the first alone where all rest,
-    /// none without bodies.
+    /// The written frames in which bodies are placed anew: the first alone where all rest, none without
+    /// bodies.
     pub(super) fn frames_of_bodies(&self) -> &[usize] {
         let count = match &self.bodies[..] {
             [] => 0,
@@ -241,8 +241,8 @@ impl<'a> Series<'a> {
 
     /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards:
     /// the flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the
-    /// sheet lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat
-    /// sheet, as on closed cylinders.
+    /// sheet lies in the first frame of the trajectory. `None` if no flat sheet has the rest lengths, as on
+    /// closed cylinders.
     pub fn uv(&self) -> Option<&[[f64; 2]]> {
         self.uv.as_deref()
     }
@@ -441,7 +441,7 @@ impl<'a> Series<'a> {
         let x = self.trajectory.frame(frame);
         (
             self.trajectory.times()[frame],
-            x.expect("frames are those of the trajectory"),
+            x.expect("frames come from the trajectory"),
         )
     }
 

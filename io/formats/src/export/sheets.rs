@@ -50,7 +50,7 @@ impl NamedPart {
     }
 }
 
-/// A name of ASCII letters, digits and `_` that begins neither with a digit nor as those of bodies do.
+/// A name of ASCII letters, digits and `_` that begins neither with a digit nor as names of bodies do.
 fn identifier(name: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let plain: String = name

@@ -6,8 +6,7 @@ use isosheet_files::write_atomically;
 use std::path::Path;
 use stl_io::{Normal, Triangle, Vertex};
 
-/// Writes one mesh, binary, with coordinates of 32 bits. Normals have length 1; those of faces without area
-/// are 0.
+/// Writes one mesh, binary, with coordinates of 32 bits. Normals have length 1, or 0 for faces without area.
 pub(super) fn write(path: &Path, faces: &[[u32; 3]], x: &[f64]) -> Result<(), ExportError> {
     let _: u32 = fits("faces", faces.len(), u32::MAX as usize)?;
     let points = single(x)?;

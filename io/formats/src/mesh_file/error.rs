@@ -2,7 +2,7 @@
 
 use isosheet_files::DataError;
 use isosheet_mesh::wording::counted;
-use isosheet_mesh::{Advice, MeshError};
+use isosheet_mesh::{Advice, MeshError, TopologyError};
 use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -74,8 +74,17 @@ pub enum MeshFileProblem {
     #[error(transparent)]
     Data(#[from] DataError),
     /// The vertices and faces are not a sheet.
-    #[error(transparent)]
+    #[error("{0}{numbered}", numbered = numbered(.0))]
     Mesh(#[from] MeshError),
+}
+
+/// How the vertices and faces are numbered that an error names: files of some formats count from 1.
+fn numbered(error: &MeshError) -> &'static str {
+    match error {
+        MeshError::Topology(TopologyError::NoFaces | TopologyError::TooLarge { .. })
+        | MeshError::WrongLength { .. } => "",
+        _ => "; vertices and faces count from 0",
+    }
 }
 
 impl Advice for MeshFileProblem {

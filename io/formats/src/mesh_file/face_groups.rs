@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct FaceGroups(BTreeMap<String, Vec<u32>>);
 
 impl FaceGroups {
-    /// Adds a face, whose number is not below those of the faces that the group has.
+    /// Adds a face, whose number is not below any number of a face in the group.
     pub(crate) fn add(&mut self, group: &str, face: u32) {
         match self.0.get_mut(group) {
             Some(faces) if faces.last() == Some(&face) => {}

@@ -23,8 +23,8 @@ use std::collections::HashMap;
 ///
 /// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
 ///   metres.
-/// - Without `faces_vertices` the faces are those of the flat crease pattern, and so they are where those of
-///   the file leave out creases. Vertices of the pattern that are at one place are one then.
+/// - Without `faces_vertices` the faces come from the flat crease pattern, and also if the faces of the file
+///   leave out creases. Vertices of the pattern that are at one place are one then.
 /// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands.
 ///   Mountains, valleys and fold angles are as seen from the side from which faces are counter-clockwise, so
 ///   that those at reversed faces are turned with them.
@@ -57,7 +57,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
         .faces_vertices
         .as_ref()
         .filter(|faces| !faces.is_empty());
-    // Faces that leave out creases are not those of the pattern.
+    // Faces that leave out creases are no faces of the pattern.
     let is_pattern = is_flat && !is_folded && frame.groups.is_none() && !edges.is_empty();
     // What refers to vertices that do not exist is refused below.
     let exist = |faces: &[Vec<i64>]| {
@@ -226,8 +226,8 @@ fn read_edges(frame: &FrameRecord, vertices: usize) -> Result<Vec<FileCrease>, D
     ends.iter().enumerate().map(crease).collect()
 }
 
-/// Refuses fold angles of a crease pattern that its assignments exclude. Those of a folded form are what the
-/// folds have come to.
+/// Refuses fold angles of a crease pattern that its assignments exclude. The angles of a folded form are what
+/// the folds have come to.
 fn check_angles(edges: &[FileCrease]) -> Result<(), DataError> {
     let contradicts = |crease: &FileCrease| {
         let angle = crease.angle.unwrap_or(0.0);

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, whose keys
-/// are those of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of
+/// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, which has
+/// the keys of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of
 /// one frame.
 ///
 /// ```toml

@@ -130,7 +130,7 @@ fn add_mesh(
     Ok(())
 }
 
-/// The triangles of a list, strip or fan of corners; none if the corners are those of points or lines.
+/// The triangles of a list, strip or fan of corners; none if the corners belong to points or lines.
 fn triangles(mode: Mode, corners: &[i64]) -> Option<Vec<[i64; 3]>> {
     let triples = corners.windows(3).map(|c| [c[0], c[1], c[2]]);
     Some(match mode {
@@ -340,7 +340,7 @@ struct PlacedMesh<'a> {
 }
 
 /// The meshes that nodes of the scene show, each with the matrix of its node, as often as they are shown: all
-/// of them, or those of a name. Where no node shows one of these, they are as they are.
+/// of them, or the meshes of a name. Where no node shows one of these, they are as they are.
 fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<PlacedMesh<'a>> {
     let is_wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
     let scene = document

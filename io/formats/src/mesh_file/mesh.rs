@@ -49,8 +49,8 @@ pub struct ReadingChanges {
     /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
     /// and fold angles at them.
     pub reversed_faces: usize,
-    /// Faces of FOLD files that were left out because creases are sides of none of them: those that the edges
-    /// enclose take their place.
+    /// Faces of FOLD files that were left out because creases are sides of none of them. The faces that the
+    /// edges enclose take their place.
     pub replaced_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
@@ -96,7 +96,7 @@ impl fmt::Display for ReadingChanges {
             (
                 self.replaced_faces,
                 FACES,
-                "of the file replaced by those that its edges enclose, as they leave out creases",
+                "of the file replaced by the faces that its edges enclose, as they leave out creases",
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),
@@ -160,9 +160,9 @@ pub struct MeshFile {
     /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were
     /// made of one.
     pub drawn: DrawnLines,
-    /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of
-    /// PLY files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials;
-    /// of FOLD files by the key `faces_isosheet:group`.
+    /// The groups of triangles that the file names: in OBJ files by groups, objects and materials; in PLY
+    /// files by properties of faces, as `property=value`; in glTF files by nodes, meshes and materials; in
+    /// FOLD files by the key `faces_isosheet:group`.
     pub groups: FaceGroups,
     /// Of each triangle the texture coordinates of its corners, where the file has them; empty if it has
     /// none.
@@ -283,8 +283,8 @@ impl MeshFile {
         }
     }
 
-    /// Makes one crease of those between the same vertices, which is unassigned where they are meant to do
-    /// different things, and removes those whose ends have become one vertex.
+    /// Unites creases between two vertices to one, which is unassigned where they are meant to do different
+    /// things. Removes creases whose ends have become one vertex.
     pub(super) fn unite_creases(&mut self) {
         let mut first: HashMap<[u32; 2], usize> = HashMap::new();
         let mut united: Vec<FileCrease> = Vec::new();

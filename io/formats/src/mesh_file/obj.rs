@@ -10,7 +10,7 @@ use isosheet_mesh::wording::given;
 
 /// Reads the vertices and faces of an OBJ file.
 ///
-/// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; those of normals are
+/// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; indices of normals are
 /// skipped), `g`, `o` and `usemtl` as groups of the faces that follow, line continuation by a backslash,
 /// comments. Normals, colours, lines and points are skipped. Texture coordinates that are not finite or not
 /// there are none.

@@ -152,7 +152,7 @@ impl PlyRow {
         PropertyAccessResult::Set
     }
 
-    /// The texture coordinates of the corners of a face: its own, or those of the vertices.
+    /// The texture coordinates of the corners of a face: its own, or the coordinates of the vertices.
     fn texture_of_corners(
         &self,
         vertices: &[Option<[f64; 2]>],

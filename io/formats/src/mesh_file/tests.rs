@@ -264,7 +264,7 @@ fn defects_of_ply_files_name_their_place() {
     );
     let flat = TEXT_PLY.replace("float z", "float w");
     ply(&flat, None, "the vertices have no property \"z\"");
-    // Triangles that would be lost beside those of the faces.
+    // Triangles that would be lost beside the triangles of the faces.
     let strips = "element tristrips 1\nproperty list int int vertex_indices\nelement face";
     let strips = TEXT_PLY
         .replace("element face", strips)

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 pub(super) enum SampleTimes {
     /// At times in seconds.
     Seconds(Vec<f64>),
-    /// At those of their files, if all files have one, and else at a number of frames each, in the order of
-    /// the numbers of the files.
+    /// At the times of their files, if all files have one, and else at a number of frames each, in the order
+    /// of the numbers of the files.
     Numbers(Vec<u64>),
 }
 

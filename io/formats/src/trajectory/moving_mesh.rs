@@ -167,7 +167,7 @@ impl MovingMesh {
         }
     }
 
-    /// The bytes of the archive, and those that its arrays take.
+    /// The bytes of the archive, and the number of bytes of its arrays.
     fn packed(&self, packing: Packing) -> io::Result<(Vec<u8>, u64)> {
         let mut bytes = Vec::new();
         let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes), packing);

@@ -8,9 +8,9 @@ use isosheet_files::DataError;
 const MOST_FRAMES: f64 = 86_400.0;
 
 impl Trajectory {
-    /// The motion from frame `first` to frame `last`, with `rate` frames a second instead of those that were
-    /// recorded. The first frame stays, and the others follow at its time plus `k / rate` as long as there is
-    /// a state at that time. Between two recorded frames every number is interpolated linearly in time:
+    /// The motion from frame `first` to frame `last`, with `rate` frames a second instead of the recorded
+    /// frames. The first frame stays, and the others follow at its time plus `k / rate` as long as there is a
+    /// state at that time. Between two recorded frames every number is interpolated linearly in time:
     /// vertices are on the straight lines between their places, so that lengths are kept in the recorded
     /// frames only. Of frames at one time the last one counts.
     ///

@@ -193,7 +193,7 @@ fn the_slider_of_a_fold_is_the_part_of_the_folding() {
     }
     let key = format!("field-{}", replay.fields.len() - 1);
     assert_eq!(result["startColour"], key.as_str());
-    // Plain, the fold angle, the height, and the fields: those of creases leave the sides as they are.
+    // Plain, the fold angle, the height, and the fields: fields of creases leave the sides as they are.
     let modes = result["modes"].as_array().unwrap().len();
     assert_eq!(number(&result["pictures"]["colourings"]), modes as f64);
     let sides = &result["sides"];

@@ -11,7 +11,7 @@ fn numbers_framing_and_plots_are_right() {
         return skipped("node", "node is not installed");
     }
     let view = Path::new(env!("CARGO_MANIFEST_DIR")).join("view");
-    let tests = ["against", "format", "framing"];
+    let tests = ["against", "format", "framing", "start"];
     let tests = tests.map(|name| format!("tests/{name}.test.js"));
     let mut command = Command::new("node");
     let run = command.arg("--test").args(tests).current_dir(view).output();

@@ -22,7 +22,7 @@ import {
 import { drawEdges, edgeUniforms, outline } from "./edges.js";
 import { castOnGround } from "./ground.js";
 
-/** Shapes of three.js stand along y, those of the document along z. */
+/** Shapes of three.js stand along y, shapes of the document along z. */
 const upright = (geometry) => geometry.rotateX(Math.PI / 2);
 
 /** Edges of a body are outlined where its faces meet at more than this angle, in degrees. */

@@ -25,7 +25,7 @@ function superscript(exponent) {
   return [...String(exponent)].map((c) => (c === "-" ? "\u207b" : DIGITS[c])).join("");
 }
 
-/** The largest size of some values; those that are missing count for nothing. */
+/** The largest size of some values; missing values count for nothing. */
 export function largestOf(values) {
   let largest = 0;
   for (const value of values) {

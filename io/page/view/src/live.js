@@ -37,7 +37,7 @@ export class Live {
     return this.role?.steers ?? false;
   }
 
-  /** Puts the controls of the run where those of a recorded one are. */
+  /** Puts the controls of the run where a recorded run has its controls. */
   arrange() {
     document.body.classList.add("live");
     $("scrub").hidden = true;

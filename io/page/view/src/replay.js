@@ -161,8 +161,8 @@ export class Replay {
 
 // A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
 // place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. A quantity
-// `ofCreases` is of some edges, and is shown on the two colours of the sheet. Ranges are those
-// of the whole run, so that colours mean the same in every frame; `open` says beyond which ends there are
+// `ofCreases` is of some edges, and is shown on the two colours of the sheet. Ranges belong to the whole
+// run, so that colours mean the same in every frame; `open` says beyond which ends there are
 // values. Values up to the `floor` are round-off.
 
 /** Creases whose value differs from zero by less than this share of the range of colours show nothing. */
@@ -191,7 +191,7 @@ function farFrom(zero) {
   return (place) => !(Math.abs(place - zero) > FLAT);
 }
 
-/** Where the values of a field are, and what shows nothing: of creases those whose value is zero. */
+/** Where the values of a field are, and what shows nothing: creases with the value zero. */
 function placeOf(field, zero) {
   const ofCreases = field.place === "crease";
   return { place: ofCreases ? "edge" : field.place, ofCreases, leavesOut: ofCreases ? farFrom(zero) : Number.isNaN };

@@ -1,5 +1,5 @@
 // The sheet as objects of three.js: faces with two sides and edges, pins, the rest shape.
-// Positions are those of the stage: metres less a centre, divided by a size.
+// Positions are positions on the stage: metres less a centre, divided by a size.
 
 import {
   BackSide,

@@ -23,7 +23,7 @@ fn leporello(strips: usize, gap: f64) -> (Topology, Vec<f64>, Vec<usize>) {
 #[test]
 fn a_leporello_has_a_layer_for_each_strip() {
     let (topology, x, panels) = leporello(5, 1e-3);
-    let layers = Layers::of_panels(&topology, &x, &panels).unwrap();
+    let layers = Layers::of_panels(&topology, &x, &panels, 1e-6).unwrap();
     assert_eq!(layers.levels, [0, 1, 2, 3, 4]);
     assert_eq!(layers.count(), 5);
     assert_eq!(layers.shows_front, [true, false, true, false, true]);
@@ -39,14 +39,14 @@ fn a_leporello_has_a_layer_for_each_strip() {
 #[test]
 fn a_leporello_that_is_turned_over_has_the_other_order() {
     let (topology, x, panels) = leporello(4, -1e-3);
-    let layers = Layers::of_panels(&topology, &x, &panels).unwrap();
+    let layers = Layers::of_panels(&topology, &x, &panels, 1e-6).unwrap();
     assert_eq!(layers.levels, [3, 2, 1, 0]);
 }
 
 #[test]
 fn what_has_no_order_is_refused() {
     let (topology, x, panels) = leporello(3, 1e-9);
-    let found = Layers::of_panels(&topology, &x, &panels);
+    let found = Layers::of_panels(&topology, &x, &panels, 1e-6);
     assert!(
         matches!(found, Err(LayersError::Touching { .. })),
         "{found:?}"
@@ -54,14 +54,16 @@ fn what_has_no_order_is_refused() {
     // One strip stands upright.
     let (topology, mut x, panels) = leporello(1, 0.0);
     let (other, upright, _) = leporello(2, 2.0);
-    let found = Layers::of_panels(&other, &upright, &[0, 0, 2, 2]);
+    let found = Layers::of_panels(&other, &upright, &[0, 0, 2, 2], 1e-6);
     assert!(
         matches!(found, Err(LayersError::NotFlat { .. })),
         "{found:?}"
     );
     x.iter_mut().for_each(|c| *c *= 2.0);
     assert_eq!(
-        Layers::of_panels(&topology, &x, &panels).unwrap().count(),
+        Layers::of_panels(&topology, &x, &panels, 1e-6)
+            .unwrap()
+            .count(),
         1
     );
 }
@@ -82,6 +84,15 @@ fn woven_strips_have_no_layers() {
     }
     let topology = Topology::from_faces(16, &faces).unwrap();
     let panels = [0, 0, 2, 2, 4, 4, 6, 6];
-    let found = Layers::of_panels(&topology, &x, &panels);
-    assert_eq!(found, Err(LayersError::Circle));
+    let found = Layers::of_panels(&topology, &x, &panels, 1e-6);
+    let Err(LayersError::Circle { faces }) = found else {
+        panic!("{found:?}");
+    };
+    let mut circle: Vec<usize> = faces.iter().map(|f| panels[f.index()]).collect();
+    // Each lies on the one before.
+    for k in 0..4 {
+        assert_eq!((circle[k] + 6) % 8, circle[(k + 1) % 4], "{circle:?}");
+    }
+    circle.sort_unstable();
+    assert_eq!(circle, [0, 2, 4, 6]);
 }

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 /// A key of a scene and the values that it takes, written as `key=a,b,c`.
 ///
-/// Values are those of TOML. As in edits of a scene, a value that is not TOML is taken as a string, so that
+/// Values are values of TOML. As in edits of a scene, a value that is not TOML is taken as a string, so that
 /// names need no quotes. Commas inside of quotes, brackets and braces belong to a value.
 ///
 /// ```
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(values("a=x=1,y"), ["x=1", "y"]);
     }
 
-    /// The parts are those of a TOML array of the same text, for values that are TOML.
+    /// For values that are TOML, the parts of a TOML array of this text.
     #[test]
     fn the_parts_are_the_entries_of_an_array() {
         for text in [

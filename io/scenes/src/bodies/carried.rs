@@ -74,7 +74,7 @@ impl CarriedBody {
         self.vertices
     }
 
-    /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
+    /// The vertices of its surface, by their numbers among the vertices of the sheets and of all surfaces.
     pub fn surface(&self) -> Range<usize> {
         self.part.vertices.clone()
     }

@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub struct Facts {
     /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub sheet: Sheet,
-    /// The vertices of `sheet` by those of the model, where they are not the same.
+    /// The vertices of `sheet` by the vertices of the model, where they differ.
     pub(crate) points: Option<SurfacePoints>,
     /// Of several sheets and bodies the name of each, and where it is in the union.
     pub parts: Vec<(String, Part)>,
@@ -62,13 +62,13 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Positions or velocities of what is seen, by those of the vertices of the model (`3V`).
+    /// Positions or velocities of what is seen, from the vertices of the model (`3V`).
     pub fn shown<'a>(&self, x: &'a [f64]) -> Cow<'a, [f64]> {
         SurfacePoints::placed(self.points.as_ref(), x)
     }
 
-    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of
-    /// bodies and obstacles.
+    /// Values of what is seen from values of the model, so many for each: the values of the sheets, and zero
+    /// for bodies and obstacles.
     fn of_sheets(
         &self,
         mut values: Vec<f64>,
@@ -86,7 +86,7 @@ impl Facts {
         values
     }
 
-    /// The faces of each sheet of this name, or of each one, among those of the model.
+    /// The faces of each sheet of this name, or of each one, among the faces of the model.
     pub fn faces_of_sheets(&self, name: Option<&str>) -> Vec<Range<usize>> {
         if self.parts.is_empty() {
             let whole = 0..self.sheet.topology().face_count();
@@ -98,17 +98,17 @@ impl Facts {
         named.map(|(_, part)| part.faces.clone()).collect()
     }
 
-    /// Values of the edges of what is seen by those of the model.
+    /// Values of the edges of what is seen, from the model.
     pub fn of_edges(&self, values: Vec<f64>) -> Vec<f64> {
         self.of_sheets(values, 1, |part| &part.edges)
     }
 
-    /// Pairs of values of the faces of what is seen by those of the model.
+    /// Pairs of values of the faces of what is seen, from the model.
     pub fn of_faces(&self, pairs: Vec<f64>) -> Vec<f64> {
         self.of_sheets(pairs, 2, |part| &part.faces)
     }
 
-    /// So many values of the vertices of what is seen by those of the model.
+    /// So many values of the vertices of what is seen, from the model.
     pub(crate) fn of_vertices(&self, values: Vec<f64>, each: usize) -> Vec<f64> {
         self.of_sheets(values, each, |part| &part.vertices)
     }
@@ -135,8 +135,8 @@ impl Facts {
     }
 
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques
-    /// about the origins of the frames of those that do not deform, and about the origin of space of the
-    /// others.
+    /// on rigid obstacles are about the origins of their frames, and torques on obstacles that deform about
+    /// the origin of space.
     pub fn obstacle_loads(&self, simulation: &Simulation) -> Vec<Wrench> {
         let driven = &self.origins.driven[..];
         let rigid = simulation.body_loads().into_iter().enumerate();

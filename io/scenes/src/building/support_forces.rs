@@ -8,14 +8,14 @@ use nalgebra::{DMatrix, Vector3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// How the forces of a simulation are those of the supports of its scene.
+/// How the forces of a simulation give the forces of the supports of its scene.
 ///
 /// A vertex that rods to held ones keep in place ([`Simulation::immobile_vertices`]), such as one on the
 /// straight edge of a banner between two corners, has a force of its own in the simulation, which its rods
 /// hand on to the supports. They do so as strings of equal tension would: with the lengths `l` of the rods,
 /// the shares `w` of a support obey `sum (w_i - w_j) / l_ij = 0` at each such vertex i, are one at the
-/// vertices of this support and zero at those of the others. On a straight line of rods this is the law of
-/// the lever. The shares of all supports add up to one, so that the forces balance the weight.
+/// vertices of this support and zero at the vertices of the others. On a straight line of rods this is the
+/// law of the lever. The shares of all supports add up to one, so that the forces balance the weight.
 #[derive(Clone, Debug)]
 pub struct SupportForces {
     facts: Arc<Facts>,

@@ -137,7 +137,8 @@ impl ContactSettings {
         }
     }
 
-    /// The options of the engine for a sheet of some thickness (metres), with those that it has by itself.
+    /// The options of the engine for a sheet of some thickness (metres), with the automatic values where the
+    /// scene gives none.
     pub(crate) fn options(&self, automatic: ContactOptions, thickness: f64) -> ContactOptions {
         ContactOptions {
             activation: self.activation.unwrap_or(automatic.activation),

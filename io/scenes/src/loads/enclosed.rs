@@ -51,8 +51,8 @@ impl EnclosedGauge {
         }
     }
 
-    /// What it shows at time `t` (seconds) and positions `x` (metres), which begin with those of the sheets.
-    /// (A scene names the pressure above vacuum of gases alone.)
+    /// What it shows at time `t` (seconds) and positions `x` (metres), which begin with the sheets. (A scene
+    /// names the pressure above vacuum of gases alone.)
     pub(crate) fn value(&self, of: OfEnclosed, t: f64, x: &[f64]) -> f64 {
         match (self, of) {
             (Self::Gas(gas), OfEnclosed::Pressure) => gas.state(t, x).pressure,

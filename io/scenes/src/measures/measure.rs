@@ -2,24 +2,25 @@
 
 use crate::loads::enclosed::{EnclosedGauge, OfEnclosed};
 use crate::loads::forces::Forces;
+use crate::measures::crease_gauge::{CreaseGauge, CreaseGauges, OfCrease};
+use crate::measures::facing::Facing;
 use crate::meshes::selection::Selection;
 use crate::placing::placed::PlacedSheets;
 use crate::placing::placed_bodies::PlacedBodies;
 use crate::sheets::creases::Crease;
 use crate::sheets::fold_group::FoldGroup;
-use crate::sheets::folding::{FoldTargets, Folding};
+use crate::sheets::folding::Folding;
 use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::plain_name::check_name;
 use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
-use isosheet_dynamics::{At, CreaseSprings, Memories};
-use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_dynamics::Memories;
+use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashSet};
-use std::sync::Arc;
+use std::collections::{BTreeMap, HashSet};
 
 /// A number that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
 /// corner is from its place, how wide a fold is, how far a crease is folded and what moment that takes. A run
@@ -97,6 +98,11 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
+    /// The angle between two parts of a sheet, degrees: between the flanges of a bent blank, or the ends of a
+    /// strip. A part has the faces whose corners are all among the vertices. It faces along its vector area,
+    /// the sum of `(b - a) x (c - a) / 2` over its faces. The angle is 0 in a flat sheet, and 180 where one
+    /// part is folded onto the other; beyond that it falls again.
+    AngleTo(Selection),
     /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: it
     /// excludes the bend of a sheet over the faces beside it, which the angle between these faces includes.
     /// It is 0 for flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees
@@ -268,6 +274,21 @@ impl Measure {
             };
         let at = self.at.as_ref().unwrap_or(&Selection::All);
         let vertices = find(at, key)?;
+        if let Quantity::AngleTo(others) = &self.quantity {
+            if sheet.is_some_and(|name| bodies.named(name).is_some()) {
+                let message = "the angle is one between parts of sheets, and this is a body";
+                let remedy = "name a sheet";
+                return Err(Problem::new(key.name("sheet"), message, remedy));
+            }
+            let other_key = key.name("quantity.angle_to");
+            let others = find(others, &other_key)?;
+            let faces = sheets.union.topology().faces();
+            let parts = [(&vertices, key.name("at")), (&others, other_key)];
+            let [one, other] =
+                parts.map(|(corners, key)| Facing::new(corners, faces, &sheets.start, &key));
+            let of = Reading::Angle(one?, other?);
+            return Ok(Gauge { name, of });
+        }
         let of = match &self.quantity {
             Quantity::Y => Place::Coordinate(1),
             Quantity::Z => Place::Coordinate(2),
@@ -308,7 +329,7 @@ impl Quantity {
     /// The unit of its values.
     pub fn unit(&self) -> &'static str {
         match self {
-            Self::FoldAngle => "degrees",
+            Self::FoldAngle | Self::AngleTo(_) => "degrees",
             Self::Moment => "N m",
             Self::MomentPerLength => "N",
             Self::Pressure | Self::GaugePressure => "Pa",
@@ -344,6 +365,8 @@ pub struct Gauge {
 enum Reading {
     /// Of the mean place of these vertices.
     Place(Vec<VertexId>, Place),
+    /// The angle between these parts.
+    Angle(Facing, Facing),
     Crease(CreaseGauge, OfCrease),
     Enclosed(EnclosedGauge, OfEnclosed),
 }
@@ -365,117 +388,6 @@ enum Place {
     FromVertices(Vec<VertexId>),
 }
 
-#[derive(Clone, Copy, Debug)]
-enum OfCrease {
-    Angle,
-    Moment,
-    MomentPerLength,
-}
-
-/// The creases of a scene that measures may be of.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct CreaseGauges {
-    /// The creases that have names.
-    pub(crate) named: BTreeMap<String, CreaseGauge>,
-    /// The creases of the pattern that is folded, in the order of its targets, and the targets.
-    pub(crate) folded: Option<(CreaseGauge, FoldTargets)>,
-}
-
-impl CreaseGauges {
-    /// The creases of a group of the pattern that is folded.
-    fn of_group(&self, group: &FoldGroup, key: &Key) -> Result<CreaseGauge, Problem> {
-        let own = match &self.folded {
-            Some((crease, targets)) => {
-                group.refuse_idle(targets.drawn(), key)?;
-                let own = targets.of_group(group);
-                let measured = own.iter().map(|&k| crease.measured[k]);
-                CreaseGauge {
-                    measured: measured.collect(),
-                    ..crease.clone()
-                }
-            }
-            // Refused by the checks.
-            None => {
-                return Err(Problem::new(
-                    key.clone(),
-                    "the scene has no `[folding]`",
-                    "leave it out",
-                ));
-            }
-        };
-        match own.measured.is_empty() {
-            false => Ok(own),
-            true => {
-                let message = "no crease that is driven is one of these";
-                let remedy = "name creases by lines of the drawing or by the numbers of the edges in a FOLD file, which \
-                              `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
-                Err(Problem::new(key.clone(), message, remedy))
-            }
-        }
-    }
-}
-
-/// The springs of a crease, and where they are.
-#[derive(Clone, Debug)]
-pub(crate) struct CreaseGauge {
-    pub(crate) springs: Arc<CreaseSprings>,
-    /// The springs that are measured, by their numbers, with the rest length of the edge of each, metres.
-    pub(crate) measured: Vec<(usize, f64)>,
-    /// Its sheet.
-    pub(crate) part: isosheet_mesh::Part,
-    /// The number of the springs among the potentials of the model.
-    pub(crate) potential: usize,
-    /// Other springs at some of its edges, with their numbers.
-    pub(crate) others: Vec<(Arc<CreaseSprings>, usize)>,
-}
-
-impl CreaseGauge {
-    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it. (Those
-    /// of other sheets have other numbers.)
-    pub(crate) fn find_others(&mut self, of_sheet: &[(Arc<CreaseSprings>, usize)]) {
-        if !of_sheet.iter().any(|(_, k)| *k == self.potential) {
-            return;
-        }
-        let own: BTreeSet<EdgeId> = self.springs.edges().collect();
-        let others = of_sheet.iter().filter(|(springs, k)| {
-            *k != self.potential && springs.edges().any(|e| own.contains(&e))
-        });
-        self.others = others.cloned().collect();
-    }
-
-    fn value(&self, of: OfCrease, t: f64, x: &[f64], memories: &Memories) -> f64 {
-        let own = At::new(t, &x[self.part.coordinates()]);
-        let remembering = |potential: usize| own.with_memory(&memories.lists()[potential]);
-        let at = remembering(self.potential);
-        let length: f64 = self.measured.iter().map(|(_, length)| length).sum();
-        let moment = || {
-            let moments = self.springs.moments(at);
-            -self.measured.iter().map(|(k, _)| moments[*k]).sum::<f64>()
-        };
-        match of {
-            OfCrease::Angle => {
-                let angles = self.springs.angles(at);
-                let edges: Vec<EdgeId> = self.springs.edges().collect();
-                let mut bends = BTreeMap::<EdgeId, f64>::new();
-                let of_others = self.others.iter().map(|(springs, k)| (&**springs, *k));
-                for (springs, k) in of_others.chain([(&*self.springs, self.potential)]) {
-                    for (e, bend) in springs.bends_beside(remembering(k)) {
-                        *bends.entry(e).or_default() += bend;
-                    }
-                }
-                let kink = |k: usize| match bends.get(&edges[k]) {
-                    Some(bend) => angles[k] - bend,
-                    None => angles[k],
-                };
-                let weighted = self.measured.iter().map(|(k, length)| kink(*k) * length);
-                (weighted.sum::<f64>() / length).to_degrees()
-            }
-            OfCrease::Moment => moment(),
-            OfCrease::MomentPerLength => moment() / length,
-        }
-    }
-}
-
 impl Gauge {
     /// The measures that every gas has.
     pub(crate) fn of_gas(called: &str, gas: &EnclosedGauge) -> [Self; 3] {
@@ -488,7 +400,7 @@ impl Gauge {
     /// The unit of what it shows.
     pub fn unit(&self) -> &'static str {
         match &self.of {
-            Reading::Crease(_, OfCrease::Angle) => "degrees",
+            Reading::Crease(_, OfCrease::Angle) | Reading::Angle(..) => "degrees",
             Reading::Crease(_, OfCrease::Moment) => "N m",
             Reading::Crease(_, OfCrease::MomentPerLength) => "N",
             Reading::Enclosed(_, of) => of.unit(),
@@ -502,6 +414,7 @@ impl Gauge {
         match &self.of {
             Reading::Crease(crease, of) => crease.value(*of, t, x, memories),
             Reading::Enclosed(enclosed, of) => enclosed.value(*of, t, x),
+            Reading::Angle(one, other) => one.angle_to(other, x),
             Reading::Place(vertices, of) => {
                 let place = mean(vertices, x);
                 match of {

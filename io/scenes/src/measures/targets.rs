@@ -49,7 +49,7 @@ pub struct CreaseResidual {
 /// How far the sheets are from what the scene asks for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
-    /// Differences of the angles between panels from those of a FOLD file, if the scene folds to them.
+    /// Differences of the angles between panels from the angles of a FOLD file, if the scene folds to them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folding: Option<FoldResidual>,
     /// Differences of the kinks of the driven creases from their own angles.

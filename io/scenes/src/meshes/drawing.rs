@@ -124,7 +124,7 @@ impl DrawingFile {
     }
 
     fn options(&self) -> DrawingOptions {
-        // Those that cannot be read were refused.
+        // Selectors that cannot be read were refused.
         let selectors = self.lists().into_iter().flat_map(|(_, list, class)| {
             let selectors = list.iter().filter_map(|text| text.parse::<Selector>().ok());
             selectors.map(move |s| (s, class))

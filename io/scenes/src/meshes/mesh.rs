@@ -13,9 +13,9 @@ use crate::words::key::Key;
 use crate::words::part::Part;
 use crate::words::problem::{Checks, Problem};
 use crate::words::unit::Unit;
-use isosheet_formats::{DrawnEdges, FaceGroups, MeshFile, ReadingChanges};
+use isosheet_formats::{DrawnEdges, FaceGroups, MeshFile, MeshFileProblem, ReadingChanges};
 use isosheet_mesh::generate::{FoldPattern, GenerateError};
-use isosheet_mesh::{MeshError, Sheet, generate};
+use isosheet_mesh::{Advice, MeshError, Sheet, generate};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -446,7 +446,14 @@ fn read_sheet(file: &MeshFileKey, key: &Key, files: &mut Files) -> Result<RestMe
     let mesh = files.read(file, key)?;
     rest_mesh(&mesh).map_err(|error| {
         let path = file.path.display();
-        let remedy = format!("`isosheet check {path} --fix -o FILE` repairs what can be repaired");
+        let remedy = match MeshFile::clone(&mesh).repair() {
+            Ok(_) => format!("`isosheet check {path} --fix -o FILE` repairs what can be repaired"),
+            Err(error) => {
+                let advice = error.advice().unwrap_or("edit the mesh there");
+                format!("this cannot be repaired automatically: {advice}")
+            }
+        };
+        let error = MeshFileProblem::from(error);
         Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
     })
 }

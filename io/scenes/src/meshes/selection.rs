@@ -165,13 +165,19 @@ impl Selection {
         found.sort_unstable();
         found.dedup();
         if found.is_empty() {
+            let [least, most] = bounds(points);
             return Err(Problem::new(
                 key.clone(),
                 format!(
                     "no vertex of the sheet is selected here{}",
                     nearest_in_words(points, |p| self.distance(p))
                 ),
-                "compare the region with where the sheet is (`isosheet info` gives its bounds)",
+                format!(
+                    "the sheet goes from {} to {}: change the region, or the unit of a mesh file, `scale = 0.001` \
+                     for millimetres",
+                    place(&least),
+                    place(&most)
+                ),
             ));
         }
         Ok(found)

@@ -84,13 +84,13 @@ impl DrivenObstacles {
         first.map(|obstacle| VertexId::from_index(obstacle.surface.vertices.start))
     }
 
-    /// Their first vertex among those of all surfaces, if there are any.
+    /// Their first vertex among the vertices of all surfaces, if there are any.
     pub(crate) fn first_point(&self) -> Option<usize> {
         let first = self.list.first();
         first.map(|obstacle| obstacle.surface.part.vertices.start)
     }
 
-    /// The masses of a model with those of their vertices.
+    /// The masses of a model with the masses of their vertices.
     pub(crate) fn mass(&self, others: MassMatrix) -> MassMatrix {
         let Some(last) = self.list.last() else {
             return others;

@@ -3,8 +3,7 @@
 use isosheet_mesh::Part;
 use std::ops::Range;
 
-/// An obstacle whose surface is among those of a simulation: its vertices are pinned, and follow a mesh in
-/// motion.
+/// An obstacle whose surface is part of a simulation: its vertices are pinned, and follow a mesh in motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct DrivenSurface {
     /// The number of the obstacle in the scene.

@@ -38,7 +38,7 @@ pub(crate) struct Form {
     texture: Vec<FaceTexture>,
     /// Positions at the start, `3V`.
     start: Vec<f64>,
-    /// Velocities at the start beside those of the sheet as a whole, `3V`.
+    /// Velocities at the start beside the velocity of the sheet as a whole, `3V`.
     pub(crate) velocities: Option<Vec<f64>>,
     /// Positions of the shape whose curvature it has.
     pub(crate) curled: Option<Vec<f64>>,

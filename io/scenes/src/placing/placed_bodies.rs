@@ -140,7 +140,7 @@ impl<'a> PlacedBodies<'a> {
         )
     }
 
-    /// The masses of the model, of those of the sheets.
+    /// The masses of the model, given the masses of the sheets.
     pub(crate) fn mass(&self, sheets: &Sheet, of_sheets: MassMatrix) -> MassMatrix {
         if self.list.is_empty() {
             return of_sheets;
@@ -159,7 +159,7 @@ impl<'a> PlacedBodies<'a> {
         MassMatrix::union(&all)
     }
 
-    /// The positions at the start of the vertices of the model, after those of the sheets.
+    /// The positions at the start of the vertices of the model, after the sheets.
     pub(crate) fn start(&self) -> impl Iterator<Item = f64> {
         let bodies = self.list.iter();
         bodies.flat_map(|body| body.tetrahedron.positions().iter().copied())
@@ -375,7 +375,7 @@ impl PlacedBody<'_> {
         [0, 1, 2, 3].map(|k| VertexId::from_index(self.first.index() + k))
     }
 
-    /// The vertices of its surface at a selection, by their numbers among those of all surfaces.
+    /// The vertices of its surface at a selection, by their numbers among the vertices of all surfaces.
     pub(crate) fn vertices_at(
         &self,
         selection: &Selection,

@@ -198,7 +198,7 @@ impl LiveScene {
             .shown(&self.under_way.simulation.state().v)
     }
 
-    /// Their masses, kilograms: zero of those of bodies, whose mass is not on their surface.
+    /// Their masses, kilograms: zero for bodies, whose mass is not on their surface.
     pub fn masses(&self) -> Vec<f64> {
         let masses = self.under_way.simulation.model().mass().vertex.clone();
         self.under_way.facts.of_vertices(masses, 1)
@@ -446,7 +446,7 @@ impl LiveScene {
     }
 }
 
-/// The rigid motions of a scene that some keys are those of, or of a part.
+/// The rigid motions of a scene to which some keys belong, or parts of them.
 fn moved_by(scene: &mut Scene, targets: &[(Key, Target)]) -> Vec<(Key, MotionKey)> {
     let all = scene.motions_mut().into_iter();
     let driven = all.filter(|moved| targets.iter().any(|(key, _)| key.is_within(&moved.key)));

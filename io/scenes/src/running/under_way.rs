@@ -57,8 +57,7 @@ impl UnderWay {
         }
     }
 
-    /// Takes a step, see [`Simulation::step_watched`]; the forces of the supports are those of this step
-    /// then.
+    /// Takes a step, see [`Simulation::step_watched`]; the forces of the supports then belong to this step.
     pub fn step_watched(
         &mut self,
         h: f64,

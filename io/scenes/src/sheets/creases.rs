@@ -354,7 +354,7 @@ fn drawn(
     let t = refined.mesh().topology();
     let mut found = BTreeSet::new();
     for (k, text) in lines.iter().enumerate() {
-        // Those that cannot be read were refused.
+        // Selectors that cannot be read were refused.
         let Ok(selector) = text.parse::<Selector>() else {
             continue;
         };

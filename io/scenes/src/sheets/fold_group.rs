@@ -85,7 +85,7 @@ impl FoldGroup {
         Ok(())
     }
 
-    /// The selectors of lines with their numbers; those that cannot be read were refused.
+    /// The selectors of lines with their numbers; selectors that cannot be read were refused.
     fn selectors(&self) -> impl Iterator<Item = (usize, Selector)> {
         let lines = match self {
             Self::Drawn(lines) => &lines[..],

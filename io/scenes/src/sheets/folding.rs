@@ -208,7 +208,7 @@ impl FollowedFolds {
         self.angles.iter().zip(targets).map(off).collect()
     }
 
-    /// The differences at positions `x`, those of creases as they were followed.
+    /// The differences at positions `x`, at creases as they were followed.
     pub fn residual(&self, targets: &FoldTargets, t: &Topology, x: &[f64]) -> FoldResidual {
         let off = self.off(targets);
         let squares: f64 = off.iter().map(|d| d * d).sum();
@@ -377,8 +377,8 @@ impl Folding {
         Ok(targets)
     }
 
-    /// The springs that drive creases to targets from positions `x` (`3V`, metres), and those that keep edges
-    /// flat.
+    /// The springs that drive creases to targets from positions `x` (`3V`, metres), and the springs that keep
+    /// edges flat.
     pub(crate) fn springs(
         &self,
         targets: &FoldTargets,

@@ -73,8 +73,7 @@ impl Refined {
         inside.filter(|e| !is_part[e.index()]).collect()
     }
 
-    /// The vertices of the refined mesh at positions `x` (`3V`) of those of the mesh: new ones in the middle
-    /// of edges.
+    /// The vertices of the refined mesh at positions `x` (`3V`) of the mesh: new ones in the middle of edges.
     pub(crate) fn positions(&self, mut x: Vec<f64>) -> Vec<f64> {
         for level in &self.levels[..self.levels.len() - 1] {
             for ends in level.topology().edges() {
@@ -85,8 +84,8 @@ impl Refined {
         x
     }
 
-    /// What the edges of the refined mesh are meant to do: as those that they are parts of, and to stay flat
-    /// inside the faces.
+    /// What the edges of the refined mesh are meant to do. A part of an edge does what the edge does; edges
+    /// inside the faces stay flat.
     pub(crate) fn roles(&self, roles: EdgeRoles) -> EdgeRoles {
         let mut assignments = vec![None; self.sheet().topology().edge_count()];
         for edge in self.inside_faces() {

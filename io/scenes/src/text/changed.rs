@@ -35,8 +35,8 @@ pub(crate) fn edited(scene: &Scene, edits: &[Edit]) -> Option<Scene> {
     Scene::deserialize(toml::Deserializer::parse(&text).ok()?).ok()
 }
 
-/// The text of a scene whose values at some keys differ from those of the text: each is written at its key,
-/// or with what it is in where the text has no place for it alone.
+/// The text of a scene with other values at some keys: each is written at its key, or with what it is in
+/// where the text has no place for it alone.
 pub(crate) fn written(text: &str, scene: &Scene, keys: &[Key]) -> Option<String> {
     let mut document = text.parse::<DocumentMut>().ok()?;
     let whole = values(scene)?;

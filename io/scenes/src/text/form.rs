@@ -89,6 +89,17 @@ fn visit(
             let message = format!("`{key}` is a number, and the scene has a list there");
             problems.push(place.problem(message, list_remedy(forms, key)));
         }
+        DeValue::Integer(_) | DeValue::Float(_) if !takes_numbers(forms) => {
+            let choices = choices(forms);
+            if !choices.is_empty() {
+                let message = format!("`{key}` is a number, and the scene has a choice there");
+                let remedy = format!(
+                    "write one of these: {}; docs/scene.md describes them",
+                    choices.join(", ")
+                );
+                problems.push(place.problem(message, remedy));
+            }
+        }
         _ => {}
     }
 }
@@ -166,6 +177,26 @@ fn has_type(form: &Schema, kind: &str) -> bool {
 fn is_choice(forms: &[&Schema]) -> bool {
     let tables = forms.iter().filter(|form| form["properties"].is_object());
     tables.count() > 1
+}
+
+/// How the choices are written of a value that is one of several names and tables; empty of another value.
+fn choices(forms: &[&'static Schema]) -> Vec<String> {
+    let names = forms.iter().flat_map(|form| {
+        let several = form["enum"].as_array().into_iter().flatten();
+        several
+            .chain([&form["const"]])
+            .filter_map(|name| name.as_str())
+    });
+    let names: Vec<String> = names.map(|name| format!("{name:?}")).collect();
+    let tables = forms
+        .iter()
+        .filter_map(|form| form["properties"].as_object());
+    let keys = tables.flat_map(|table| table.keys());
+    let tables: Vec<String> = keys.map(|key| format!("{{ {key} = ... }}")).collect();
+    match names.len() + usize::from(!tables.is_empty()) {
+        0 | 1 => Vec::new(),
+        _ => [names, tables].concat(),
+    }
 }
 
 /// The keys that a table of one of these forms may have, with the forms of their values.

@@ -105,6 +105,7 @@ impl SceneFile {
         let mut text = SceneText {
             path: path.to_owned(),
             text,
+            edits: edits.to_vec(),
         };
         if !edits.is_empty() {
             let parsed = text.text.parse::<DocumentMut>();
@@ -142,8 +143,12 @@ impl SceneFile {
             );
             Problem::new(Key::root(), message, remedy)
         })?;
-        let path = folder.join("scene.toml");
-        Ok(Self::new(scene, SceneText { path, text }, folder))
+        let text = SceneText {
+            path: folder.join("scene.toml"),
+            text,
+            edits: Vec::new(),
+        };
+        Ok(Self::new(scene, text, folder))
     }
 
     /// The scene file with other values at some keys.
@@ -178,7 +183,7 @@ impl SceneFile {
     /// Its text, edits included.
     pub fn text(&self) -> &SceneText {
         self.text.get_or_init(|| {
-            let SceneText { path, text } = &self.read;
+            let SceneText { path, text, edits } = &self.read;
             let text = match self.changed.is_empty() {
                 true => text.clone(),
                 false => {
@@ -187,8 +192,11 @@ impl SceneFile {
                     written.unwrap_or_else(|| toml::to_string(&self.scene).unwrap_or_default())
                 }
             };
-            let path = path.clone();
-            SceneText { path, text }
+            SceneText {
+                path: path.clone(),
+                text,
+                edits: edits.clone(),
+            }
         })
     }
 

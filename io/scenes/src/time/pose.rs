@@ -82,7 +82,7 @@ impl Pose {
     }
 }
 
-/// Sine and cosine of an angle in degrees, those of quarter turns exactly.
+/// Sine and cosine of an angle in degrees, exact for quarter turns.
 fn sin_cos(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),

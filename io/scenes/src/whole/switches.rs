@@ -89,7 +89,7 @@ impl Switches {
             .ok_or_else(|| other_switches().into())
     }
 
-    /// Whether they are those of a scene.
+    /// Whether they belong to a scene.
     pub(crate) fn fit(&self, scene: &Scene) -> bool {
         let own = self.0.iter().map(|switch| switch.of);
         own.eq(scene.periods().map(|period| period.of))

@@ -69,7 +69,7 @@ impl Scene {
     }
 }
 
-/// A shorter step that fits, of those that halving makes.
+/// The remedy: the longest step that fits, found by halving, or a slower change.
 fn remedy(h: f64, fits: impl Fn(f64) -> bool) -> String {
     let mut shorter = (1..=f64::MANTISSA_DIGITS as i32).map(|k| h * 0.5_f64.powi(k));
     match shorter.find(|h| fits(*h)) {
@@ -81,7 +81,7 @@ fn remedy(h: f64, fits: impl Fn(f64) -> bool) -> String {
     }
 }
 
-/// Whether two keys are those of components of the same vector.
+/// Whether two keys are components of one vector.
 fn are_components(one: &Key, other: &Key) -> bool {
     let is_component = |key: &Key| match key.parts().last() {
         Some(KeyPart::Name(name)) => ["x", "y", "z"].contains(&name.as_str()),

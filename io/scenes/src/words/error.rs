@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use toml_edit::{Document, Item};
 
 /// The text of a scene, with the name under which messages show it.
@@ -19,9 +19,20 @@ pub struct SceneText {
     pub path: PathBuf,
     /// What is in it, edits included.
     pub text: String,
+    /// The edits, `key=value`.
+    pub edits: Vec<String>,
 }
 
 impl SceneText {
+    /// The name of the file, with the edits: the file itself may have no such line.
+    fn name(&self) -> String {
+        let path = self.path.to_string_lossy();
+        match self.edits.is_empty() {
+            true => path.into_owned(),
+            false => format!("{path} with {}", self.edits.join(", ")),
+        }
+    }
+
     /// The bytes of the value at a key, or of the nearest key above it that the text has; of a value on
     /// several lines the first line.
     fn locate(&self, key: &Key) -> Range<usize> {
@@ -76,7 +87,7 @@ const MOST_PROBLEMS: usize = 50;
 /// Most problems that are shown of the entries of one list: they tend to have one cause.
 const MOST_OF_LIST: usize = 3;
 
-/// The problems without most of those of the entries of one list, of which their number is told.
+/// The problems without most of the entries of one list, whose number is told instead.
 fn first_of_lists(problems: Vec<Problem>) -> Vec<Problem> {
     // Of each list, or key of its entries, which one was the last that is shown, and how many are not.
     let mut lists: BTreeMap<String, (usize, usize, usize)> = BTreeMap::new();
@@ -198,7 +209,7 @@ impl SceneError {
 
     /// The message.
     pub fn render(&self, colours: MessageStyle) -> String {
-        let Some(SceneText { path, text }) = &self.text else {
+        let Some(whole) = &self.text else {
             let lines: Vec<String> = self.problems.iter().map(without_place).collect();
             return lines.join("\n");
         };
@@ -206,10 +217,11 @@ impl SceneError {
             MessageStyle::Plain => Renderer::plain(),
             MessageStyle::Terminal => Renderer::styled(),
         };
+        let name = whole.name();
         let mut shown = Vec::new();
         for problem in &self.problems {
-            let span = self.text.as_ref().map(|t| t.span_of(problem));
-            shown.push(renderer.render(&[group(problem, path, text, span.unwrap_or(0..0))]));
+            let span = whole.span_of(problem);
+            shown.push(renderer.render(&[group(problem, &name, &whole.text, span)]));
         }
         shown.join("\n\n")
     }
@@ -223,10 +235,10 @@ fn without_place(problem: &Problem) -> String {
     }
 }
 
-fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<usize>) -> Group<'a> {
+fn group<'a>(problem: &'a Problem, name: &str, text: &'a str, span: Range<usize>) -> Group<'a> {
     let marker = AnnotationKind::Primary.span(span);
     let snippet = Snippet::source(text)
-        .path(without_colours(&path.to_string_lossy()))
+        .path(without_colours(name))
         .annotation(marker);
     let group = Level::ERROR
         .primary_title(without_colours(&problem.message))
@@ -237,8 +249,8 @@ fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<us
     }
 }
 
-/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source
-/// is rendered without them.
+/// A text whose escape characters are shown, so that all escape characters of a rendered message are its own.
+/// The source is rendered without them.
 fn without_colours(text: &str) -> String {
     text.replace('\u{1b}', "\\u001b")
 }

@@ -131,7 +131,7 @@ impl Checks {
         self.report(key, message, format!("{remedy}: {}", range.reason));
     }
 
-    /// Questions a number that is larger than those of its unit usually are.
+    /// Questions a number that is larger than numbers of its unit usually are.
     fn question(&mut self, key: &Key, value: f64, unit: Unit) {
         let Some(usual) = unit.range().usual else {
             return;

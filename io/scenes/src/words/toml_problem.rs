@@ -26,7 +26,8 @@ pub(crate) fn toml_problem(error: &toml::de::Error) -> Problem {
 fn in_words(full: &str) -> (String, String) {
     let message = full.lines().next().unwrap_or_default();
     // An empty table is found where an enum is expected.
-    let wrong = wrong_type(message).filter(|(_, expected)| *expected != "enum");
+    let wrong =
+        wrong_type(message).filter(|(_, expected)| !["enum", "newtype variant"].contains(expected));
     if let Some((found, expected)) = wrong {
         let (expected, remedy) = expected_in_words(expected);
         let message = match found {
@@ -48,6 +49,10 @@ fn in_words(full: &str) -> (String, String) {
         _ if message.starts_with("wanted exactly 1 element, more") => (
             "this is one choice among several, and more than one is given".to_owned(),
             "keep one of them".to_owned(),
+        ),
+        _ if message.starts_with("invalid type: unit variant, expected") => (
+            "this choice has a value, and none is given".to_owned(),
+            "write it as a table, `{ choice = value }`; docs/scene.md has the choices".to_owned(),
         ),
         _ if message.starts_with("wanted exactly 1 element, found 0")
             || message.ends_with(", expected enum") =>
@@ -118,7 +123,7 @@ fn expected_in_words(expected: &str) -> (String, &'static str) {
     (words.to_owned(), remedy)
 }
 
-/// Lists of fixed length; other words are those of scenes already.
+/// Lists of fixed length; other words are words of scenes already.
 fn expected_list(expected: &str) -> (String, &'static str) {
     let lengths = ["an array of length ", "a tuple of size "];
     let length = lengths.iter().find_map(|l| expected.strip_prefix(l));

@@ -25,8 +25,8 @@ pub(crate) enum Unit {
     Factor,
 }
 
-/// The sizes of the numbers of a unit: far beyond those of any sheet, and near enough for the squares, cubes
-/// and quotients of a step neither to overflow nor to vanish.
+/// The sizes of the numbers of a unit: far beyond any sheet, and near enough for the squares, cubes and
+/// quotients of a step neither to overflow nor to vanish.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitRange {
     /// The unit as it is written behind a number; nothing for coefficients and factors.

@@ -4,7 +4,7 @@ use isosheet_mesh::Advice;
 use thiserror::Error;
 
 /// A reason why a scene that can start may not do what was meant, or why the results of a complete run may
-/// not be those of a real sheet.
+/// differ from a real sheet.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct Warning {

@@ -139,6 +139,10 @@ pub(crate) const ALL_KEYS: [&str; 17] = [
     at = { vertices = [0] }
     quantity = { distance_to = { vertices = [1] } }
     [[measure]]
+    name = "opening"
+    at = "all"
+    quantity = { angle_to = "all" }
+    [[measure]]
     name = "fold"
     crease = "lid"
     quantity = "fold_angle"

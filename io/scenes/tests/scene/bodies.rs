@@ -100,7 +100,7 @@ fn in_folder(folder: &Path, text: &str) -> Result<LiveScene, String> {
     LiveScene::start(file).map_err(|e| e.to_string())
 }
 
-/// A corner piece of three cubes is thrown with a spin: its centre is on a parabola, its momenta are those of
+/// A corner piece of three cubes is thrown with a spin: its centre is on a parabola, its momenta follow from
 /// its mass and inertia and remain, and so does its energy.
 #[test]
 fn a_corner_piece_falls_and_tumbles() {

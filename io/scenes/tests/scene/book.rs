@@ -97,7 +97,7 @@ fn anchors(page: &str) -> BTreeSet<String> {
     headings.chain(own).collect()
 }
 
-/// Pages refer to pages and sections that exist, those of the book to no file outside of it, and the table of
+/// Pages refer to pages and sections that exist, pages of the book to no file outside of it, and the table of
 /// contents has all of them.
 #[test]
 fn links_between_pages_lead_somewhere() {

@@ -153,7 +153,7 @@ fn refined_panels_fold_as_whole_ones() {
 }
 
 /// Angles that no rigid panels have are approached the better the more easily panels bend; stiff panels of an
-/// elastic sheet fold as far as those of rods.
+/// elastic sheet fold as far as panels of rods.
 #[test]
 fn panels_of_an_elastic_sheet_bend() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Meshes, crease patterns and bodies by formula are those of the crates that make them.
+//! Meshes, crease patterns and bodies by formula agree with the crates that make them.
 
 use crate::{parse, simulation};
 use isosheet_geometry::{Shape, TriangleSurface};

@@ -17,7 +17,7 @@ const VERTICES: [[f32; 3]; 6] = [
     [2.0, 1.0, 0.0],
 ];
 
-/// The four triangles, those of the left square first.
+/// The four triangles, the left square first.
 const TRIANGLES: [[u16; 3]; 4] = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
 
 fn obj_vertices() -> String {

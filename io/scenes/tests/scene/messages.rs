@@ -118,7 +118,7 @@ const WRONG: [Wrong<'_>; 21] = [
         "vertices = []",
         [6, 6],
         "no vertex",
-        "compare the region",
+        "change the region, or the unit of a mesh file",
     ),
     (
         "version = 1",
@@ -313,7 +313,7 @@ fn other_forms_are_told_the_right_one() {
     }
 }
 
-/// Sizes far beyond those of any sheet are refused, with the reason.
+/// Sizes far beyond any sheet are refused, with the reason.
 #[test]
 fn absurd_magnitudes_are_refused() {
     let mass = "density = 0.1\nmass = 1e-300";
@@ -447,7 +447,7 @@ fn whole_numbers_beyond_those_of_toml_are_refused() {
     }
 }
 
-/// Names and choices that are not there are told with those that are.
+/// The message for an unknown name or choice lists the known ones.
 #[test]
 fn names_of_bodies_and_choices_are_told() {
     let capsule = "capsule = { radius = 0.1, length = 0 }";

@@ -226,7 +226,7 @@ fn wrong_poses_are_refused() {
     assert!(error.contains("in place of `x`"), "{error}");
 }
 
-/// From the second time on nothing is built anew for what is driven: the bits are those of a simulation that
+/// From the second time on nothing is built anew for what is driven: the bits agree with a simulation that
 /// is.
 #[test]
 fn what_is_led_has_the_bits_of_what_is_built_anew() {

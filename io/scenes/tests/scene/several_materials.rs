@@ -128,8 +128,7 @@ fn a_heavy_body_far_away_changes_nothing_of_a_sheet_at_its_limit() {
         }
         run.state().x[3 * 21]
     });
-    // The stretch is 0.2 to 0.4 mm. (Steps of scenes with rods, those of the body, have a tolerance of their
-    // own.)
+    // The stretch is 0.2 to 0.4 mm. (Scenes with rods, as of the body, have their own tolerance of steps.)
     assert!((alone - beside).abs() < 1e-6, "{alone} {beside}");
 }
 

@@ -18,8 +18,8 @@ fn scene(first: &str, second: &str, rest: &str) -> String {
     )
 }
 
-/// The strip of a scene is that of the generator in its place in space, from lists of points and from files,
-/// and its lengths at rest are those that it starts with.
+/// The strip of a scene is the strip of the generator in its place in space, from lists of points and from
+/// files. Its lengths at rest are its lengths at the start.
 #[test]
 fn strips_are_those_of_the_generator() {
     let [first, second] = [arc(0.1, 0.0), arc(0.06, 0.08)];

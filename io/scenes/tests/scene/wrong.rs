@@ -406,8 +406,8 @@ pose = {{ position = [0, 0, -1] }}
             );
         }
     }
-    // The scene above has all the paths of meshes that the reference knows. (Those of drawings and of meshes
-    // in motion are tried with these, and those of curves with strips.)
+    // The scene above has all the paths of meshes that the reference knows. (Paths of drawings and of meshes
+    // in motion are tried with these, and paths of curves with strips.)
     let scenes = scenes();
     let paths = places(&scenes)
         .into_keys()

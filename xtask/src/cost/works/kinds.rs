@@ -19,7 +19,7 @@ pub(in crate::cost) struct Work {
     /// What happens, for people.
     pub(super) title: String,
     scene: KindOfScene,
-    /// Edits of a scene file besides those of the size and of the start.
+    /// Edits of a scene file besides the edits of the size and of the start.
     #[serde(default)]
     pub(super) edits: Vec<String>,
     /// The keys that are the size.
@@ -90,7 +90,7 @@ impl Work {
         }
     }
 
-    /// The methods by which a scene is run that is not a file: for the tablecloth those that take contact. A
+    /// The methods by which a scene is run that is not a file: for the tablecloth the methods with contact. A
     /// file names its own.
     pub(super) fn methods(&self) -> Vec<Option<Stepped>> {
         let default = (DEFAULT, Method::default());
@@ -155,7 +155,7 @@ impl Work {
         FigureScene::named(file, &self.name, &edits).map(Some)
     }
 
-    /// The run from one of its starts, by number; those of scenes that are no files are alike. `None` if the
+    /// The run from one of its starts, by number; starts of scenes that are no files are alike. `None` if the
     /// mesh is a file that is not there.
     ///
     /// # Errors

@@ -61,7 +61,7 @@ pub(super) struct WorkRow {
     pub(super) iterations_per_step: Option<f64>,
     /// Factorisations: the most of a start as a multiple of the fewest.
     pub(super) largest_over_smallest: Option<f64>,
-    /// Parts of steps, and those that were rejected.
+    /// Parts of steps, and rejected ones.
     pub(super) steps: Option<f64>,
     pub(super) rejected: Option<f64>,
     /// The largest.

@@ -55,7 +55,7 @@ fn the_worst_run_is_judged() {
     );
 }
 
-/// The runs are those of all entries of variants, and edits of the effort come last. What is for greater
+/// The runs are the runs of all entries of variants, and edits of the effort come last. What is for greater
 /// effort is not checked in quick reports.
 #[test]
 fn entries_of_variants_have_their_own_runs() {
@@ -116,7 +116,7 @@ fn a_limitation_is_judged_on_both_sides() {
     }
 }
 
-/// A run that stops fails all bounds but those of what its accepted steps say.
+/// A run that stops fails all bounds but the bounds of what its accepted steps say.
 #[test]
 fn runs_that_stop_are_no_good() {
     let found = checks(

@@ -6,7 +6,7 @@ use isosheet_materials::potential::Memories;
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use isosheet_motion::Profile;
 
-/// The derivatives of the loads at positions are those of differences of the forces, and loads are forces
+/// The derivatives of the loads at positions agree with differences of the forces, and loads are forces
 /// alone: they do not turn the whole by themselves.
 pub(in crate::sheet_model) fn check_derivatives(load: &impl FaceLoad, x: &[f64]) {
     for (number, face) in load.faces().iter().enumerate() {

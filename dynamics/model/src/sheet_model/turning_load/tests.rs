@@ -28,8 +28,7 @@ fn derivatives_are_those_of_differences() {
     check_derivatives(&load, &moved);
 }
 
-/// At the start the loads are those that were asked for; where the sheet has turned, they have turned with
-/// it.
+/// At the start the loads are as they were asked for; where the sheet has turned, they have turned with it.
 #[test]
 fn the_load_turns_with_the_sheet() {
     let sheet = crumpled();

@@ -31,7 +31,7 @@ pub(super) struct FrameRecord {
     pub(super) lines: Option<Vec<LineRecord>>,
     #[serde(rename = "edges_isosheet:lines")]
     pub(super) lines_of_edges: Option<Vec<Vec<usize>>>,
-    /// The other frames; in the key frame alone, whose keys are those of the file itself.
+    /// The other frames; in the key frame alone, which has the keys of the file itself.
     file_frames: Option<Vec<FrameRecord>>,
 }
 
@@ -127,8 +127,8 @@ fn listed(frames: &[FrameRecord]) -> String {
 /// More ancestors of a frame are refused: a circle has no end.
 const MOST_ANCESTORS: usize = 1000;
 
-/// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
-/// inherits from the key frame.
+/// A frame and its ancestors, from which it inherits, the nearest first. A frame that inherits and names no
+/// parent inherits from the key frame.
 fn ancestry(frames: &[FrameRecord], number: usize) -> Result<Vec<usize>, DataError> {
     let mut chain = vec![number];
     let mut at = number;

@@ -33,8 +33,8 @@ pub(super) fn sides_of<C: Copy + TryInto<u32>>(
     })
 }
 
-/// Whether faces are those of a crease pattern with these edges: every crease is a side of one, and no
-/// outline goes to and fro along an edge.
+/// Whether faces belong to a crease pattern with these edges: every crease is a side of one, and no outline
+/// goes to and fro along an edge.
 pub(super) fn fit(faces: &[Vec<i64>], edges: &[FileCrease]) -> bool {
     let turns_back = |face: &Vec<i64>| {
         let n = face.len();
@@ -135,7 +135,7 @@ impl MeshFile {
     }
 
     /// Turns the creases at faces that a topology of the same vertices has the other way round: their
-    /// assignments and angles are then those of its edges.
+    /// assignments and angles then belong to its edges.
     ///
     /// # Errors
     /// [`DataError`] for a fold between a face that is reversed and another one.

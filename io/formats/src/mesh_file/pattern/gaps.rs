@@ -4,11 +4,11 @@ use super::faces::root;
 use crate::mesh_file::{EdgeAssignment, FileCrease, Point, distance};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Of the edges that lead nowhere the number of those of the outline or of cuts that are inside of a face,
-/// and the ends of the others at gaps in the outline.
+/// Of the edges that lead nowhere: how many belong to the outline or to cuts and are inside of a face, and
+/// the ends of the others at gaps in the outline.
 ///
 /// A crease has the sheet on both of its sides. Where a crease is at the border of what the lines enclose, a
-/// face is missing beside it, and the ends of lines outside are those of a gap; elsewhere they are drawn too
+/// face is missing beside it, and the ends of lines outside are ends of a gap; elsewhere they are drawn too
 /// far, and enclose nothing. Lines that are connected to no face at all are an outline with a gap, if they
 /// are not straight.
 pub(super) fn of(

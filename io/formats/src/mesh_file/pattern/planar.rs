@@ -22,10 +22,10 @@ pub(crate) struct Planar {
     pub(crate) faces: Vec<Vec<i64>>,
     /// Edges that were divided because others cross them or end on them.
     pub(crate) divided: usize,
-    /// Edges that were left out because they lead nowhere, and those that lie on another one.
+    /// Edges that were left out because they lead nowhere, and edges that lie on another one.
     pub(crate) loose: usize,
     pub(crate) double: usize,
-    /// Lines of the outline or of cuts inside of faces among those that lead nowhere.
+    /// The edges that lead nowhere and are lines of the outline or of cuts inside of faces.
     pub(crate) loose_cuts: usize,
     /// Edges where lines that are meant to do different things lie on each other.
     pub(crate) contradicting: usize,
@@ -43,7 +43,7 @@ pub(crate) struct FileUnit {
 }
 
 impl FileUnit {
-    /// Coordinates that are those of the file.
+    /// Coordinates as in the file.
     pub(crate) const SAME: Self = Self {
         along: [1.0, 1.0],
         name: "",
@@ -102,8 +102,8 @@ impl Points {
     }
 }
 
-/// Divides edges where others cross them or end on them within a distance, makes one of those that lie on
-/// each other, leaves out those that lead nowhere, and finds the faces.
+/// Divides edges where others cross them or end on them within a distance, unites edges that lie on each
+/// other, leaves out edges that lead nowhere, and finds the faces.
 ///
 /// # Errors
 /// [`DataError`] for edges without length, for lines that meet more often than a drawing of so many lines has
@@ -266,8 +266,8 @@ impl Planar {
         }
     }
 
-    /// Makes the parts of the edges between the points on them. Where those that are meant to do different
-    /// things lie on each other, the sheet folds freely.
+    /// Makes the parts of the edges between the points on them. The sheet folds freely where edges with
+    /// different meanings lie on each other.
     fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) {
         struct Known {
             at: usize,
@@ -326,7 +326,7 @@ impl Planar {
         self.contradicting = known.values().filter(|known| known.contradicts).count();
     }
 
-    /// Leaves out the edges that are sides of no face: those that lead from one part of the sheet to another.
+    /// Leaves out the edges that are sides of no face: they lead from one part of the sheet to another.
     fn drop_bridges(&mut self) {
         let mut sides = HashSet::new();
         for face in &self.faces {

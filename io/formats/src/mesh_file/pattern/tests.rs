@@ -478,7 +478,7 @@ fn vertices_at_one_place_of_patterns_without_faces_are_one() {
         "edges_vertices": [[0,1],[1,2],[2,3],[3,0],[0,4]]}"#;
     let mesh = read(MeshFormat::Fold, point).unwrap();
     assert_eq!((mesh.changes.welded_vertices, mesh.faces.len()), (1, 2));
-    // Vertices of faces that fit and those of folded forms are different ones, as those of a slit are.
+    // Faces that fit and folded forms keep different vertices, as a slit does.
     let slit = r#"{"vertices_coords": [[0,0],[1,0],[1,1],[0,1],[1,1]], "faces_vertices": [[0,1,2],[0,4,3]],
         "edges_vertices": [[0,1],[1,2],[0,2],[4,3],[3,0],[0,4]], "edges_assignment": ["B","B","B","B","B","B"]}"#;
     let slit = read(MeshFormat::Fold, slit).unwrap();

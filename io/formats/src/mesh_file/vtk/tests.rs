@@ -214,7 +214,7 @@ fn what_is_no_polygon_is_refused() {
     }
 }
 
-/// Binary legacy files have the largest byte first; those of version 5 list where polygons begin.
+/// Binary legacy files have the largest byte first; files of version 5 list where polygons begin.
 #[test]
 fn legacy_files_are_read() {
     let points: Vec<u8> = POINTS.iter().flat_map(|v| v.to_be_bytes()).collect();

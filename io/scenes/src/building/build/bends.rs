@@ -1,7 +1,7 @@
 //! Bending, creases, and how sheets stretch.
 
 use super::builder::{Builder, PlateMadeOf, at};
-use crate::measures::measure::CreaseGauge;
+use crate::measures::crease_gauge::CreaseGauge;
 use crate::measures::targets::DrivenCrease;
 use crate::measures::yielding::YieldingCrease;
 use crate::placing::in_words::elastic_in_words;
@@ -292,7 +292,7 @@ impl Builder<'_> {
             if let Some((_, name)) = named.iter().find(|(known, _)| *known == key) {
                 self.creases.named.insert(name.clone(), gauge);
             } else if key == Key::root().name("folding") && self.creases.folded.is_none() {
-                // The springs of the creases come before those that keep edges flat.
+                // The springs of the creases come before the springs that keep edges flat.
                 let targets = self.targets.folding.clone();
                 self.creases.folded = targets.map(|targets| (gauge, targets));
             }

@@ -4,7 +4,7 @@ use crate::bodies::obstacles;
 use crate::holding::bond::Bond;
 use crate::holding::switch::Holder;
 use crate::loads::enclosed::EnclosedGauge;
-use crate::measures::measure::CreaseGauges;
+use crate::measures::crease_gauge::CreaseGauges;
 use crate::measures::targets::Targets;
 use crate::meshes::mesh_file::Files;
 use crate::meshes::sequence::Sequence;

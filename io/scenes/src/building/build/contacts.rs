@@ -20,7 +20,7 @@ use std::ops::Range;
 enum Meeting {
     /// The points of sheets, bodies and obstacles in motion, between which contact acts.
     Points(Range<usize>),
-    /// The obstacle of this number among those that do not deform.
+    /// The obstacle of this number among the rigid ones.
     Body(u32),
 }
 

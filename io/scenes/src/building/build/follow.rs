@@ -1,4 +1,4 @@
-//! Vertices that follow those of a mesh in motion.
+//! Vertices that follow a mesh in motion.
 
 use super::builder::{Builder, at};
 use crate::holding::supports::Followed;
@@ -13,7 +13,7 @@ use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
 impl Builder<'_> {
-    /// Pins vertices to those of a mesh in motion; `key` is the place of `follow`.
+    /// Pins vertices to a mesh in motion; `key` is the place of `follow`.
     pub(super) fn follow(
         &mut self,
         vertices: &[VertexId],

@@ -69,7 +69,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The faces of sheets all corners of which are selected, those of the first sheet that is named first.
+    /// The faces of sheets with all corners selected, in the order in which the sheets are named.
     fn loaded(
         &self,
         names: &Option<Vec<String>>,
