@@ -19,8 +19,8 @@ fn strip(cells: usize) -> Result<Sheet, SceneError> {
     Ok(grid.map_positions(|[x, y, z]| [x - cell, y, z])?)
 }
 
-/// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of its
-/// width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.
+/// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of
+/// its width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.
 fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
     let sheet = strip(24)?;
     let clamp = sheet.vertices_where(|[x, _, _]| x < 1e-9);
@@ -39,8 +39,8 @@ fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
     ))
 }
 
-/// The sag over the length of an inextensible elastica under its weight, by shooting: `theta'' = -Gamma (1 - s)
-/// cos theta` with `theta(0) = 0` and `theta'(1) = 0`, by steps of Runge and Kutta.
+/// The sag over the length of an inextensible elastica under its weight, by shooting:
+/// `theta'' = -Gamma (1 - s) cos theta` with `theta(0) = 0` and `theta'(1) = 0`, by steps of Runge and Kutta.
 fn sag(gamma: f64) -> f64 {
     let shoot = |slope: f64| -> [f64; 3] {
         let steps = 2000;
