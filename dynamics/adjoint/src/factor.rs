@@ -131,8 +131,8 @@ impl Factor {
         }
     }
 
-    /// Iterations by the factorisation of another step that are worth while: fewer and fewer systems are tried
-    /// where that has failed.
+    /// Iterations by the factorisation of another step that are worth while: fewer and fewer systems are
+    /// tried where that has failed.
     pub(crate) fn patience(&mut self, patience: usize) -> usize {
         if self.skipped > 0 {
             self.skipped -= 1;

@@ -9,8 +9,8 @@ pub struct Gradient {
     pub value: f64,
     /// Its derivatives by the numbers of the scene, in their order.
     pub of_numbers: Vec<f64>,
-    /// Its derivatives by positions (per metre) and velocities (seconds per metre) at the start, `3V` each, the
-    /// numbers being what they are: of sheets of rods in directions that keep the lengths. Pins are among
+    /// Its derivatives by positions (per metre) and velocities (seconds per metre) at the start, `3V` each,
+    /// the numbers being what they are: of sheets of rods in directions that keep the lengths. Pins are among
     /// them; velocities of pins in motion follow from their motions, and have zeros.
     pub of_start: OfState,
     /// What counted as constant since it has no derivative; nothing unless the options say so.

@@ -22,7 +22,7 @@ pub(crate) trait System {
     fn precondition(&mut self, z: &mut [f64]);
 }
 
-/// Improves a solution `z` of `A z = b` until the preconditioned residual is a part `tolerance` of the
+/// Solves `A z = b` until the preconditioned residual is a part `tolerance` of the
 /// preconditioned right-hand side, in so many iterations at most. Sizes are measured with `weights`.
 pub(crate) fn solve(
     system: &mut impl System,
@@ -40,6 +40,7 @@ pub(crate) fn solve(
     let mut rhs = b.to_vec();
     system.precondition(&mut rhs);
     let goal = tolerance * norm(&rhs);
+    z.copy_from_slice(&rhs);
     let mut iterations = 0;
     let mut image = vec![0.0; n];
     loop {

@@ -1,6 +1,6 @@
-//! Gradients of runs: how a number that depends on positions and velocities at chosen times, a *loss*, changes
-//! with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run, whatever
-//! the number of parameters but for some evaluations of forces each.
+//! Gradients of runs: how a number that depends on positions and velocities at chosen times, a *loss*,
+//! changes with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run,
+//! whatever the number of parameters but for some evaluations of forces each.
 //!
 //! | | |
 //! |---|---|
@@ -70,6 +70,7 @@ mod gradient;
 mod krylov;
 mod loss;
 mod memory;
+mod neighbours;
 mod options;
 mod rows;
 mod run;

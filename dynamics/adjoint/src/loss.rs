@@ -12,8 +12,8 @@ pub struct Share {
     pub of: OfState,
 }
 
-/// A loss `L = sum_n l_n(x_n, v_n)` over the states at the start of a run (`n = 0`) and after each step of its
-/// plan.
+/// A loss `L = sum_n l_n(x_n, v_n)` over the states at the start of a run (`n = 0`) and after each step of
+/// its plan.
 ///
 /// A closure is one; [`coordinate`] and [`squared_distances`] are others.
 pub trait Loss {

@@ -16,10 +16,10 @@ pub enum Kept {
     /// All of them: some twenty numbers for each coordinate and sub-step.
     #[default]
     All,
-    /// Those from one checkpoint to the next, so many steps of the plan, which are made again for a gradient:
-    /// a gradient costs a run more.
+    /// None but checkpoints. The sub-steps from one checkpoint to the next are made again for a gradient,
+    /// which costs a run more.
     Between {
-        /// Steps of the plan, at least one.
+        /// Steps of the plan from one to the next, at least one.
         checkpoints: usize,
     },
 }

@@ -4,6 +4,7 @@ use crate::error::AdjointError;
 use crate::family::{Family, Plan, Scene};
 use crate::gradient::Gradient;
 use crate::loss::Loss;
+use crate::neighbours::Neighbours;
 use crate::options::{AdjointOptions, Kept};
 use crate::sweep::Sweep;
 use isosheet_dynamics::sensitivity::AcceptedStep;
@@ -171,15 +172,6 @@ impl<'f> Run<'f> {
             false => Err(AdjointError::NotRepeated { number: part.first }),
         }
     }
-}
-
-/// The simulations with another value of a number.
-pub(crate) struct Neighbours {
-    pub(crate) number: usize,
-    /// With a larger and with a smaller value.
-    pub(crate) simulations: [Simulation; 2],
-    /// Between the two values.
-    pub(crate) distance: f64,
 }
 
 fn scene(

@@ -141,7 +141,6 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         own.factorize(&model, operator.blocks, rows, step.h)
             .map_err(failed)?;
         is_fresh = true;
-        z.fill(0.0);
     }
     if solved.residual.is_nan() || solved.residual > UNSOLVED {
         return Err(AdjointError::Unsolved {

@@ -221,8 +221,8 @@ pub trait Remembering {
         }
     }
 
-    /// Adds to `of_x` (`3V`) the derivatives of a number by the positions at a state where a simulation starts,
-    /// of which those by the memory that [`Remembering::start`] makes there are `of_memory`.
+    /// Adds to `of_x` (`3V`) the derivatives of a number by the positions at a state where a simulation
+    /// starts: those by the memory that [`Remembering::start`] makes there are `of_memory`.
     ///
     /// # Errors
     /// [`NoDerivative`], the default of a potential that remembers anything.

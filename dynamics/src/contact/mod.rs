@@ -76,8 +76,8 @@ pub(crate) use isosheet_materials::hessian::CouplingSink;
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
 
-/// Part of a gap over which derivatives of contact are central differences: they err by its square, and by the
-/// round-off of gaps over it.
+/// Part of a gap over which derivatives of contact are central differences: they err by its square, and by
+/// the round-off of gaps over it.
 const DIFFERENCE: f64 = 1e-4;
 
 /// The geometry of contact of a sheet with bodies and with itself.

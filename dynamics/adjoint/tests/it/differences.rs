@@ -16,8 +16,8 @@ fn shell() -> Result<Sheet, SceneError> {
     Ok(lifted)
 }
 
-/// A film that is soft in its plane. (Steps of stiffer sheets end where the round-off of their energy hides what
-/// is left of the forces, a part 1e-5 of them, and differences of runs are no better.)
+/// A film that is soft in its plane. (Steps of stiffer sheets end where the round-off of their energy hides
+/// what is left of the forces, a part 1e-5 of them, and differences of runs are no better.)
 fn film() -> Material {
     let mut film = Material::office_paper();
     film.stiffness = 300.0;

@@ -1,9 +1,15 @@
 //! Closed forms, and searches that gradients lead.
 
+use crate::search::minimise;
 use crate::support::exact;
-use isosheet_adjoint::{AdjointOptions, Family, Plan, Run, Scene, SceneError, coordinate};
-use isosheet_dynamics::{Material, Method, SheetModel, State};
-use isosheet_mesh::{Sheet, generate};
+use isosheet_adjoint::{
+    AdjointOptions, Family, OfState, Plan, Run, Scene, SceneError, Share, coordinate,
+    squared_distances,
+};
+use isosheet_dynamics::{
+    Curl, Curvature, Material, MaterialDirection, Method, NaturalTensor, SheetModel, State,
+};
+use isosheet_mesh::{Sheet, VertexId, generate};
 
 const LENGTH: f64 = 0.3;
 
@@ -19,8 +25,8 @@ fn strip(cells: usize) -> Result<Sheet, SceneError> {
     Ok(grid.map_positions(|[x, y, z]| [x - cell, y, z])?)
 }
 
-/// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of its
-/// width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.
+/// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of
+/// its width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.
 fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
     let sheet = strip(24)?;
     let clamp = sheet.vertices_where(|[x, _, _]| x < 1e-9);
@@ -39,8 +45,8 @@ fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
     ))
 }
 
-/// The sag over the length of an inextensible elastica under its weight, by shooting: `theta'' = -Gamma (1 - s)
-/// cos theta` with `theta(0) = 0` and `theta'(1) = 0`, by steps of Runge and Kutta.
+/// The sag over the length of an inextensible elastica under its weight, by shooting:
+/// `theta'' = -Gamma (1 - s) cos theta` with `theta(0) = 0` and `theta'(1) = 0`, by steps of Runge and Kutta.
 fn sag(gamma: f64) -> f64 {
     let shoot = |slope: f64| -> [f64; 3] {
         let steps = 2000;
@@ -155,4 +161,118 @@ fn the_clamp_that_brings_the_tip_there() {
     let run = Run::record(&family, &[found], at_rest(), AdjointOptions::default());
     let reached = run.expect("a run").value(&coordinate(tip, 2, 1));
     assert!((reached - target).abs() < 1e-9, "{reached}");
+}
+
+/// Film that is soft in its plane.
+fn film() -> Material {
+    let mut film = Material::office_paper();
+    film.stiffness = 300.0;
+    film.rigidity = 1e-3;
+    film
+}
+
+/// The curl of three patches of a strip that gives it the shape that it has with other curls.
+#[test]
+fn the_curl_by_patches_of_a_shape() {
+    let cells = 12;
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let sheet = strip(cells)?;
+        let clamp = sheet.vertices_where(|[x, _, _]| x < 1e-9);
+        let t = sheet.topology();
+        let patch = |face: &[VertexId; 3]| {
+            let x: f64 = face.iter().map(|v| sheet.position(*v)[0]).sum::<f64>() / 3.0;
+            let number = ((3.0 * x / LENGTH).max(0.0) as usize).min(2);
+            Curvature {
+                along: p[number],
+                ..Curvature::default()
+            }
+        };
+        let curl = Curl {
+            direction: MaterialDirection::Uniform([1.0, 0.0, 0.0]),
+            curvature: NaturalTensor::Faces(t.faces().iter().map(patch).collect()),
+            profile: 1.0.into(),
+        };
+        let model = SheetModel::of_material(&sheet, &film())
+            .clamped(&clamp)
+            .curled(curl)
+            .build()?
+            .with_acceleration([0.0, 0.0, -0.5]);
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
+    };
+    let wanted = [2.0, -1.0, 3.0];
+    let run = Run::record(&family, &wanted, at_rest(), AdjointOptions::default());
+    let run = run.expect("a run");
+    let end = run.states()[1].vertex_positions();
+    let row = 1..=cells + 1;
+    let targets: Vec<(usize, [f64; 3])> = row.map(|v| (v, end[v])).collect();
+    let loss = squared_distances(targets, 1);
+    let found = minimise(
+        &family,
+        &at_rest(),
+        &loss,
+        &[0.1, 0.1, 0.1],
+        100.0,
+        25,
+        1e-16,
+    );
+    println!("{:?} {:?}", found.numbers, found.losses);
+    for (found, wanted) in found.numbers.iter().zip(wanted) {
+        assert!((found - wanted).abs() < 1e-4, "{found} {wanted}");
+    }
+}
+
+/// The rest shape of a strip that its weight makes straight: thirty heights, in at most twenty runs.
+#[test]
+fn the_rest_shape_of_a_strip_that_is_straight_under_load() {
+    let cells = 30;
+    let cell = LENGTH / f64::from(cells);
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let flat = strip(cells as usize)?;
+        // The columns of vertices, from the clamp on, keep their distances.
+        let mut places = vec![[-cell, 0.0], [0.0, 0.0]];
+        for z in p {
+            let [x, before] = places[places.len() - 1];
+            let rise: f64 = z - before;
+            places.push([x + (cell * cell - rise * rise).sqrt(), *z]);
+        }
+        let sheet = flat.map_positions(|[x, y, _]| {
+            let column = ((x + cell) / cell).round() as usize;
+            let [x, z] = places[column];
+            [x, y, z]
+        })?;
+        let clamp = flat.vertices_where(|[x, _, _]| x < 1e-9);
+        let model = SheetModel::of_material(&sheet, &film())
+            .clamped(&clamp)
+            .curved()
+            .build()?
+            .with_acceleration([0.0, 0.0, -0.5]);
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
+    };
+    let columns = 2..cells as usize + 2;
+    // Only the heights count: the targets are where the strip would be.
+    let loss = move |n: usize, state: &State| {
+        (n == 1).then(|| {
+            let mut of = OfState::zeros(state.x.len());
+            let mut value = 0.0;
+            for v in columns.clone() {
+                let z = state.x[3 * v + 2];
+                value += 0.5 * z * z;
+                of.x[3 * v + 2] = z;
+            }
+            Share { value, of }
+        })
+    };
+    let start = vec![0.0; 30];
+    let found = minimise(&family, &at_rest(), &loss, &start, 1.0, 20, 1e-10);
+    println!("{:?}", found.losses);
+    let last = found.losses.iter().copied().fold(f64::INFINITY, f64::min);
+    // A root mean square of a micrometre or two, of a sag of centimetres.
+    assert!(last < 1e-6 * found.losses[0], "{:?}", found.losses);
+    assert!(found.losses.len() <= 20);
 }

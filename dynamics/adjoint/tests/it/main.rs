@@ -4,4 +4,5 @@ mod contact;
 mod differences;
 mod inverse;
 mod refusals;
+mod search;
 mod support;
