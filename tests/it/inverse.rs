@@ -66,15 +66,15 @@ fn paper() -> Material {
     paper
 }
 
-/// Which angles of its creases bring a vertex of a third-party pattern to a place? The angles of mountains and
-/// of valleys, and a vertex of a waterbomb's square base, which is held at one face.
+/// Which angles of its creases bring a vertex of a third-party pattern to a place? The angles of mountains
+/// and of valleys, and the vertex of Miura's pattern that moves most while a face is held.
 #[test]
 fn the_crease_angles_of_a_pattern_from_the_place_of_a_vertex() {
     let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
         println!("skipped: ISOSHEET_DATA names no folder");
         return;
     };
-    let pattern = Path::new(&data).join("fold/squarebase_tri.fold");
+    let pattern = Path::new(&data).join("fold/miura_herringbone_8x8_tri.fold");
     let mesh = read_mesh(&pattern).unwrap();
     let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).unwrap();
     let side = sheet.area().sqrt();
@@ -112,7 +112,7 @@ fn the_crease_angles_of_a_pattern_from_the_place_of_a_vertex() {
             State::at_rest(sheet.positions().to_vec()),
         ))
     };
-    let asked = [0.9, 0.6];
+    let asked = [0.7, 0.6];
     let made = Run::record(&family, &asked, at_rest(), AdjointOptions::default()).unwrap();
     let end = &made.states()[1];
     let away = |v: usize| {
@@ -124,7 +124,7 @@ fn the_crease_angles_of_a_pattern_from_the_place_of_a_vertex() {
         .max_by(|a, b| away(*a).total_cmp(&away(*b)))
         .unwrap();
     let targets: Vec<Target> = (0..3).map(|k| (vertex, k, end.x[3 * vertex + k])).collect();
-    let (found, runs) = solved(&family, &[0.8, 0.7], &targets);
+    let (found, runs) = solved(&family, &[0.5, 0.5], &targets);
     println!("{found:?} in {runs} runs");
     for (found, asked) in found.iter().zip(asked) {
         assert!((found / asked - 1.0).abs() < 1e-4, "{found} {asked}");
