@@ -58,17 +58,20 @@ pub(crate) fn choices(model: &SheetModel, state: &State, found: &Memories) -> Ve
 }
 
 /// The sum of the products of `of` with what the potentials of a model remember at the end of a step, where
-/// they choose as others did.
+/// they choose as others did, but for those that are the same in models that are compared.
 pub(crate) fn settled_products(
     model: &SheetModel,
     state: &State,
-    found: &Memories,
-    choices: &[Vec<f64>],
+    (found, choices): (&Memories, &[Vec<f64>]),
     of: &[Vec<f64>],
+    same: &[bool],
 ) -> f64 {
     let mut sum = 0.0;
     let all = model.potentials().zip(found.lists()).zip(choices).zip(of);
-    for (((potential, found), choices), of) in all {
+    for ((((potential, found), choices), of), is_same) in all.zip(same) {
+        if *is_same || of.iter().all(|o| *o == 0.0) {
+            continue;
+        }
         if let Some(remembering) = potential.remembering() {
             let mut memory = found.clone();
             remembering.settle_by(choices, reached(state), &mut memory);

@@ -155,11 +155,8 @@ impl<'f> Run<'f> {
             numbers[number] = value;
             simulation(self.family, &numbers, &self.plan, Some(number))
         };
-        Ok(Neighbours {
-            number,
-            simulations: [at(ends[0])?, at(ends[1])?],
-            distance,
-        })
+        let simulations = [at(ends[0])?, at(ends[1])?];
+        Ok(Neighbours::new(number, simulations, distance))
     }
 
     /// Makes a part of the run again.

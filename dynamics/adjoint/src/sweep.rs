@@ -212,7 +212,9 @@ impl<'o> Sweep<'o> {
         for neighbours in self.neighbours.iter().filter(|_| has_any) {
             let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                 let model = simulation.model();
-                settled_products(model, &step.end, &step.memories, &choices, &self.memory)
+                let same = &neighbours.remembers_the_same;
+                let found = (&step.memories, &choices[..]);
+                settled_products(model, &step.end, found, &self.memory, same)
             });
             self.of_numbers[neighbours.number] += (up - down) / neighbours.distance;
         }
@@ -326,6 +328,13 @@ impl<'o> Sweep<'o> {
         let t = step.end.t;
         for neighbours in &mut self.neighbours {
             let mut ends = [0.0; 2];
+            // Where pins are at other places, all that is there is another force.
+            let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
+                let mut x = level.x.to_vec();
+                simulation.model().place_pins(t, &mut x);
+                x
+            });
+            let same: &[bool] = if up == down { &neighbours.same } else { &[] };
             for (end, simulation) in ends.iter_mut().zip(&mut neighbours.simulations) {
                 let model = Arc::clone(simulation.model());
                 let placed = |x: &[f64]| {
@@ -348,7 +357,7 @@ impl<'o> Sweep<'o> {
                 let begun = equations.begin_like(step, lag, &x, pairs);
                 begun.map_err(|source| AdjointError::Equations { t, source })?;
                 let mut residual = vec![0.0; x.len()];
-                equations.residual(step, &x, &mut residual);
+                equations.residual_without(same, step, &x, &mut residual);
                 *end = dot(w, &residual);
                 if !multipliers.is_empty() {
                     let values = Rows::values(&model, step, &x);

@@ -39,6 +39,7 @@ use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
 pub use membrane::{MembraneLaw, OrthotropicMembrane};
+use std::any::Any;
 use std::ops::Range;
 use swelling::Swelling;
 
@@ -468,6 +469,11 @@ impl Potential for ElasticSheet {
         unstrained + 2.0 * (energy * unstrained).sqrt()
     }
 
+    fn is_same(&self, other: &dyn Potential) -> bool {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        other.is_some_and(|other| self.faces == other.faces)
+    }
+
     fn limit(&self) -> Option<&dyn Limited> {
         Some(self)
     }
@@ -568,6 +574,18 @@ impl Remembering for ElasticSheet {
                 arcs.remember_by(&self.faces, here, bends, slack);
             }
         }
+    }
+
+    fn remembers_the_same(&self, other: &dyn Potential) -> bool {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        other.is_some_and(|other| {
+            let arcs = self.arcs.iter().zip(&other.arcs);
+            self.mass == other.mass
+                && self.acceleration == other.acceleration
+                && self.vertices == other.vertices
+                && self.arcs.len() == other.arcs.len()
+                && arcs.into_iter().all(|(own, other)| own.are_same(other))
+        })
     }
 
     fn add_memory_products(

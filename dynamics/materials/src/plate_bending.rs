@@ -38,6 +38,7 @@ use natural::NaturalCurvature;
 pub use natural::{Curl, Curvature, NaturalTensor};
 use points::{FlatPoints, add_forces};
 pub(crate) use second_derivatives::SecondDerivatives;
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencil::{Stencil, Stencils, face_of};
@@ -432,6 +433,16 @@ impl Potential for PlateBending {
         }
     }
 
+    /// Of plates that are flat without stress, and held by no clamps along lines.
+    fn is_same(&self, other: &dyn Potential) -> bool {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        other.is_some_and(|other| {
+            self.stress_free.is_none()
+                && other.stress_free.is_none()
+                && self.stencils.are_same(&other.stencils)
+        })
+    }
+
     fn hessian_kind(&self) -> HessianKind {
         match self.stress_free {
             None => HessianKind::Exact,
@@ -471,6 +482,10 @@ impl Remembering for PlateBending {
         self.stress_free
             .as_ref()
             .is_some_and(StressFreeCurvature::yields)
+    }
+
+    fn remembers_the_same(&self, _other: &dyn Potential) -> bool {
+        self.stress_free.is_none()
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {

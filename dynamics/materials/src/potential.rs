@@ -6,6 +6,7 @@ use crate::limit_error::LimitError;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ pub struct Settled {
 /// A value and a gradient are enough. The Hessian only speeds the implicit integrators up:
 /// without it their Newton iterations converge linearly in this term instead of
 /// quadratically.
-pub trait Potential: Debug + Send + Sync {
+pub trait Potential: Any + Debug + Send + Sync {
     /// Energy, joules.
     fn energy(&self, at: At<'_>) -> f64;
 
@@ -68,6 +69,13 @@ pub trait Potential: Debug + Send + Sync {
 
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
+
+    /// Whether another potential has the same energy at all times, positions and memories, as far as that can
+    /// be told by its numbers: whoever compares models need not evaluate it. The default cannot
+    /// tell, and says no.
+    fn is_same(&self, _other: &dyn Potential) -> bool {
+        false
+    }
 
     /// How [`Potential::add_hessian`] is to be taken by whoever needs all second derivatives. The default
     /// says that they are there.
@@ -182,6 +190,12 @@ pub trait Remembering {
     /// none.
     fn settle_by(&self, _choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
         self.settle(state, memory);
+    }
+
+    /// Whether another potential, which [is the same](Potential::is_same), makes the same memories of states,
+    /// as far as that can be told. The default cannot tell, and says no.
+    fn remembers_the_same(&self, _other: &dyn Potential) -> bool {
+        false
     }
 
     /// Adds to `of_memory` the derivatives of `w . dV/dx` by the numbers of the memory, with the vector `w`
@@ -397,6 +411,11 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).add_semidefinite_hessian(at, hessian);
     }
 
+    fn is_same(&self, other: &dyn Potential) -> bool {
+        let other = (other as &dyn Any).downcast_ref::<Self>();
+        other.is_some_and(|other| Self::ptr_eq(self, other))
+    }
+
     fn hessian_kind(&self) -> HessianKind {
         (**self).hessian_kind()
     }
@@ -507,6 +526,10 @@ impl Potential for Gravity {
 
     fn shape(&self) -> PotentialShape {
         PotentialShape::Linear
+    }
+
+    fn is_same(&self, other: &dyn Potential) -> bool {
+        (other as &dyn Any).downcast_ref() == Some(self)
     }
 }
 

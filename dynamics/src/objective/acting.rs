@@ -32,6 +32,8 @@ pub(super) struct Acting {
     energy: f64,
     round_off: f64,
     energy_at: Evaluated,
+    /// The potentials that are left out of gradients, by their numbers; nothing in steps.
+    left_out: Vec<bool>,
     /// Conservative forces where they were evaluated last, newtons; zero at pinned vertices.
     force: Vec<f64>,
     force_at: Evaluated,
@@ -83,6 +85,7 @@ impl Acting {
             energy: 0.0,
             round_off: 0.0,
             energy_at: Evaluated::new(n),
+            left_out: Vec::new(),
             force: vec![0.0; n],
             force_at: Evaluated::new(n),
         }
@@ -95,6 +98,25 @@ impl Acting {
             .zip(self.model.free_index())
             .filter(|(_, i)| **i != PINNED);
         free.flat_map(|(row, _)| row).map(|f| f.abs()).sum()
+    }
+
+    /// Leaves potentials of these numbers out of gradients from now on; none where there are no numbers.
+    pub(super) fn leave_out(&mut self, numbers: &[bool]) {
+        self.left_out.clear();
+        self.left_out.extend_from_slice(numbers);
+        self.force_at.forget();
+    }
+
+    /// Sets the conservative force of the potentials that are not left out.
+    fn set_rest_of_force(&mut self, at: Iterate<'_>) {
+        self.force.fill(0.0);
+        let potentials = self.model.potentials_at(at.t, at.x, at.memories);
+        for ((potential, place), is_out) in potentials.zip(&self.left_out) {
+            if !is_out {
+                potential.add_gradient(place, &mut self.force);
+            }
+        }
+        self.force.iter_mut().for_each(|f| *f = -*f);
     }
 
     /// The potentials with limits, each with where it is evaluated.
@@ -214,8 +236,12 @@ impl Term for Acting {
 
     fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
         if self.force_at.moves_to(at) {
-            self.model
-                .force_with(at.memories, at.t, at.x, &mut self.force);
+            match self.left_out.is_empty() {
+                true => self
+                    .model
+                    .force_with(at.memories, at.t, at.x, &mut self.force),
+                false => self.set_rest_of_force(at),
+            }
         }
         let acting = self.force.iter().zip(&self.applied);
         for (o, (f, a)) in out.iter_mut().zip(acting) {

@@ -191,6 +191,11 @@ impl Objective {
         }
     }
 
+    /// Leaves potentials out of gradients from now on, by their numbers.
+    pub(crate) fn leave_out(&mut self, numbers: &[bool]) {
+        self.acting.leave_out(numbers);
+    }
+
     /// All terms but the inertia and contact.
     pub(crate) fn without_contact(&mut self) -> impl Iterator<Item = &mut dyn Term> {
         self.terms().filter(|term| !is::<ContactTerm>(&**term))

@@ -135,6 +135,20 @@ impl<'a> StepEquations<'a> {
         Ok(())
     }
 
+    /// As [`StepEquations::residual`], without some of the potentials, by their numbers: those that are the
+    /// same in models that are compared.
+    pub fn residual_without(
+        &mut self,
+        potentials: &[bool],
+        step: &AcceptedStep,
+        x: &[f64],
+        out: &mut [f64],
+    ) {
+        self.objective.leave_out(potentials);
+        self.residual(step, x, out);
+        self.objective.leave_out(&[]);
+    }
+
     /// Sets the residual (`3V`, kilogram metres) at positions `x`, at pinned
     /// vertices too.
     pub fn residual(&mut self, step: &AcceptedStep, x: &[f64], out: &mut [f64]) {

@@ -57,6 +57,14 @@ impl Arcs {
         }
     }
 
+    /// Whether those of faces that are the same remember the same, as far as that can be told.
+    pub(super) fn are_same(&self, other: &Self) -> bool {
+        self.curvatures.are_same(&other.curvatures)
+            && self.at_rest == other.at_rest
+            && self.coordinates == other.coordinates
+            && self.faces == other.faces
+    }
+
     /// Its faces that are curved without stress.
     pub(super) fn curved<'a>(&'a self, faces: &'a [Face]) -> impl Iterator<Item = CurvedFace> + 'a {
         let own = faces[self.faces.clone()].iter().zip(&self.at_rest);

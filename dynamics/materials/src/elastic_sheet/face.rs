@@ -14,7 +14,7 @@ use isosheet_mesh::{EdgeId, FaceId, Part, Sheet, VertexId};
 use nalgebra::{Complex, Matrix3, Vector2, Vector3};
 
 /// A face with one constant strain.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Face {
     pub(super) id: FaceId,
     edges: [EdgeId; 3],

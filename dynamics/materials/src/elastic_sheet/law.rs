@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// In components `y` in which `C` is diagonal, `c_i`, and the norm Euclidean the forces are `s_i = y_i / (1 /
 /// c_i + r / (s_0 + s))` with `s = |(s_i)|`, one equation for `s`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Law {
     Isotropic {
         /// `K`, N/m.

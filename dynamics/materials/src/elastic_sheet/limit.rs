@@ -1,7 +1,7 @@
 //! The limit of the strain: the barrier at it, and what is beyond it.
 
 /// A function of the square of a strain that keeps it below a limit `m`, or measures what is beyond it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StrainLimit {
     law: Law,
     limit: f64,
@@ -9,7 +9,7 @@ pub(super) struct StrainLimit {
     stiffness: f64,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Law {
     /// `kappa b(p)` with `p = (4 |E|^2 / m^2 - 1) / 3` and `b = -p^2 ln(1 - p)` for `0 < p < 1`, zero below:
     /// from half the limit on, infinite at the limit.

@@ -4,7 +4,7 @@ use isosheet_motion::{Profile, ProfileError};
 use std::sync::Arc;
 
 /// The part by which the lengths of a face grow, a function of time; none by default.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Swelling(Option<Arc<Profile>>);
 
 impl Swelling {

@@ -30,6 +30,11 @@ impl SecondDerivatives {
         }
     }
 
+    /// Whether others are the same at all positions, as far as that can be told.
+    pub(crate) fn are_same(&self, other: &Self) -> bool {
+        self.inverses == other.inverses && self.stencils.are_same(&other.stencils)
+    }
+
     /// Of each face at a time and positions: a row for each component of the positions, with the components
     /// `(11, sqrt(2) 12, 22)`, the first axis along the first edge of the face; 1/m.
     pub(crate) fn at<'a>(&'a self, at: At<'a>) -> impl Iterator<Item = Matrix3<f64>> + 'a {

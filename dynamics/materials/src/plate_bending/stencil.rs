@@ -210,6 +210,15 @@ impl Stencils {
         (0..self.count()).map(|point| self.of(point))
     }
 
+    /// Whether others have the same entries, and neither has clamps along lines.
+    pub(super) fn are_same(&self, other: &Self) -> bool {
+        self.clamps.is_empty()
+            && other.clamps.is_empty()
+            && self.starts == other.starts
+            && self.vertices == other.vertices
+            && self.weights == other.weights
+    }
+
     /// Number of points.
     pub(super) fn count(&self) -> usize {
         self.starts.len() - 1

@@ -8,6 +8,7 @@ use isosheet_materials::potential::{
 use isosheet_materials::{LimitError, NoDerivative};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
+use std::any::Any;
 
 /// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of
 /// several: it sees the coordinates of its own vertices, and its derivatives go to the places that these have
@@ -80,6 +81,13 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         let hessian = &mut Shifted { part, hessian };
         self.potential
             .add_semidefinite_hessian(self.own(at), hessian);
+    }
+
+    fn is_same(&self, other: &dyn Potential) -> bool {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        other.is_some_and(|other| {
+            self.part == other.part && self.potential.is_same(&other.potential)
+        })
     }
 
     fn hessian_kind(&self) -> HessianKind {
@@ -171,6 +179,11 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
         self.remembers().settle(self.reached(state), memory)
+    }
+
+    fn remembers_the_same(&self, other: &dyn Potential) -> bool {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        other.is_some_and(|other| self.remembers().remembers_the_same(&other.potential))
     }
 
     fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
