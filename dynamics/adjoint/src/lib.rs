@@ -1,6 +1,6 @@
 //! Gradients of runs: how a number that depends on positions and velocities at chosen times, a *loss*,
 //! changes with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run,
-//! whatever the number of parameters but for some evaluations of forces each.
+//! and a little more for each parameter: two scenes, and evaluations of what the parameter changes.
 //!
 //! | | |
 //! |---|---|

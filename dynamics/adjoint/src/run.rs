@@ -7,6 +7,7 @@ use crate::loss::Loss;
 use crate::neighbours::Neighbours;
 use crate::options::{AdjointOptions, Kept};
 use crate::sweep::Sweep;
+use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::sensitivity::AcceptedStep;
 use isosheet_dynamics::{Checkpoint, Simulation};
 use isosheet_model::State;
@@ -52,7 +53,7 @@ impl<'f> Run<'f> {
         plan: Plan,
         options: AdjointOptions,
     ) -> Result<Self, AdjointError> {
-        let mut simulation = simulation(family, numbers, &plan, None)?;
+        let mut simulation = simulation(family, numbers, &plan)?;
         let count = plan.steps.len();
         let mut states = vec![simulation.state().clone()];
         let mut parts = Vec::new();
@@ -114,7 +115,7 @@ impl<'f> Run<'f> {
     /// # Errors
     /// [`AdjointError`] naming what has no derivative, with the time.
     pub fn gradient(&self, loss: &dyn Loss) -> Result<Gradient, AdjointError> {
-        let base = simulation(self.family, &self.numbers, &self.plan, None)?;
+        let base = equations(self.family, &self.numbers, &self.plan, None)?;
         let mut sweep = Sweep::new(base, &self.options);
         for number in 0..self.numbers.len() {
             sweep.add_number(self.neighbours(number)?)?;
@@ -153,7 +154,7 @@ impl<'f> Run<'f> {
         let mut numbers = self.numbers.clone();
         let mut at = |value: f64| {
             numbers[number] = value;
-            simulation(self.family, &numbers, &self.plan, Some(number))
+            equations(self.family, &numbers, &self.plan, Some(number))
         };
         let simulations = [at(ends[0])?, at(ends[1])?];
         Ok(Neighbours::new(number, simulations, distance))
@@ -184,6 +185,21 @@ fn simulation(
     family: &dyn Family,
     numbers: &[f64],
     plan: &Plan,
+) -> Result<Simulation, AdjointError> {
+    let Scene {
+        model,
+        start,
+        contact,
+    } = scene(family, numbers, None)?;
+    let simulation = Simulation::new(model, start, plan.method.clone())?;
+    in_contact(simulation.with_control(plan.control.clone())?, contact)
+}
+
+/// A simulation that knows its equations, and takes no steps.
+fn equations(
+    family: &dyn Family,
+    numbers: &[f64],
+    plan: &Plan,
     number: Option<usize>,
 ) -> Result<Simulation, AdjointError> {
     let Scene {
@@ -191,8 +207,14 @@ fn simulation(
         start,
         contact,
     } = scene(family, numbers, number)?;
-    let simulation = Simulation::new(model, start, plan.method.clone())?;
-    let simulation = simulation.with_control(plan.control.clone())?;
+    let simulation = Simulation::of_equations(model, start, plan.method.clone())?;
+    in_contact(simulation, contact)
+}
+
+fn in_contact(
+    simulation: Simulation,
+    contact: Option<Box<dyn Contact>>,
+) -> Result<Simulation, AdjointError> {
     Ok(match contact {
         Some(contact) => simulation.with_boxed_contact(contact)?,
         None => simulation,

@@ -14,11 +14,12 @@ use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
 use crate::objective::Objective;
 use crate::report::checkpoint_error::CheckpointError;
+use crate::report::effort::SolverEffort;
 use crate::report::step_report::StepOutcome;
 use crate::report::totals::StepTotals;
 use crate::step::accepted::{AcceptedStep, Recording, StepEvent, StepKind, Taken};
 use crate::step::integrator::{
-    Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
+    Attempt, ContactSupport, Integrator, Memory, MethodTraits, Phases, Proposal, RodDemand, Scene,
 };
 use crate::step::motion::Motion;
 use crate::step::reaction::Balance;
@@ -26,8 +27,8 @@ use crate::step::tuning::Tuning;
 use crate::{
     Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
-use isosheet_materials::LimitError;
 use isosheet_materials::potential::{At, Memories};
+use isosheet_materials::{LimitError, Refused};
 use isosheet_mesh::VertexId;
 use isosheet_model::Infeasibility;
 use isosheet_model::PotentialFault;
@@ -49,6 +50,41 @@ pub(crate) struct ByMethod {
     pub(crate) motion: Motion,
     /// Vertices that were pinned at the start because they cannot move.
     pub(crate) fixed: Vec<u32>,
+}
+
+/// Whether an engine takes steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Steps {
+    Taken,
+    /// It is asked for equations alone.
+    None,
+}
+
+/// In the place of a method that minimises, where no steps are taken.
+struct NoSteps;
+
+impl Integrator for NoSteps {
+    fn propose(
+        &mut self,
+        _scene: Scene<'_>,
+        attempt: Attempt<'_>,
+        _proposal: &mut Proposal,
+        _effort: &mut SolverEffort<'_>,
+    ) -> Result<(), StepError> {
+        let refused = Refused {
+            by: "a simulation of equations alone".into(),
+            why: "it takes no steps".into(),
+            remedy: Some("start it by `Simulation::new`"),
+        };
+        Err(StepError::Refused {
+            t: attempt.state.t,
+            refused: Box::new(refused),
+        })
+    }
+
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::minimising()
+    }
 }
 
 /// Sub-steps accepted after a refusal before a longer one is tried.
@@ -81,15 +117,33 @@ pub(crate) type StepSink = dyn FnMut(AcceptedStep) + Send;
 impl Engine {
     /// Vertices that rods to pins at rest hold in place become pins.
     pub(crate) fn new(
+        model: SheetModel,
+        method: Method,
+        state: State,
+    ) -> Result<Self, SimulationError> {
+        Self::started(model, method, state, Steps::Taken)
+    }
+
+    /// As [`Engine::new`], for the equations of its steps alone.
+    pub(crate) fn of_equations(
+        model: SheetModel,
+        method: Method,
+        state: State,
+    ) -> Result<Self, SimulationError> {
+        Self::started(model, method, state, Steps::None)
+    }
+
+    fn started(
         mut model: SheetModel,
         method: Method,
         mut state: State,
+        steps: Steps,
     ) -> Result<Self, SimulationError> {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
         model.set_load(&state);
-        Self::with_fixed(model, method, state, fixed)
+        Self::with_fixed(model, method, state, fixed, steps)
     }
 
     fn with_fixed(
@@ -97,6 +151,7 @@ impl Engine {
         method: Method,
         state: State,
         fixed: Vec<VertexId>,
+        steps: Steps,
     ) -> Result<Self, SimulationError> {
         if model.has_limit() && !method.is_minimising() {
             return Err(SimulationError::Elastic);
@@ -109,7 +164,10 @@ impl Engine {
         }
         let model = Arc::new(model);
         let tuning = Tuning::default();
-        let integrator = method.build(&model, &tuning)?;
+        let integrator: Box<dyn Integrator> = match steps {
+            Steps::Taken => method.build(&model, &tuning)?,
+            Steps::None => Box::new(NoSteps),
+        };
         let control = StepControl::default();
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
@@ -163,7 +221,13 @@ impl Engine {
         model.set_load(&motion.state);
         motion.balance.check(&model)?;
         check_energy(&model, &motion.memories, &motion.state)?;
-        let mut engine = Self::with_fixed(model, kept.method, motion.state.clone(), fixed)?;
+        let mut engine = Self::with_fixed(
+            model,
+            kept.method,
+            motion.state.clone(),
+            fixed,
+            Steps::Taken,
+        )?;
         engine.set_control(kept.control)?;
         engine.motion.copy_from(&motion);
         let barrier = motion.contacts.map(|contacts| contacts.barrier);

@@ -80,10 +80,28 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`] if options or state are invalid, or the state does not have the rest lengths to
     /// 1e-8 (see [`project_positions`](crate::project_positions)).
-    pub fn new(
+    pub fn new(model: SheetModel, state: State, method: Method) -> Result<Self, SimulationError> {
+        Self::with_method(model, state, method, MethodEngine::new)
+    }
+
+    /// As [`Simulation::new`], for the [equations](Simulation::step_equations) of its steps alone, by BDF2,
+    /// implicit Euler and searches for equilibria: it takes no steps, and costs less.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn of_equations(
+        model: SheetModel,
+        state: State,
+        method: Method,
+    ) -> Result<Self, SimulationError> {
+        Self::with_method(model, state, method, MethodEngine::of_equations)
+    }
+
+    fn with_method(
         model: SheetModel,
         mut state: State,
         method: Method,
+        build: fn(SheetModel, Method, State) -> Result<MethodEngine, SimulationError>,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
@@ -92,7 +110,7 @@ impl Simulation {
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
         check_potentials(&model, &model.memories(), &state)?;
-        let engine = Moved::ByMethod(Box::new(MethodEngine::new(model, method, state)?));
+        let engine = Moved::ByMethod(Box::new(build(model, method, state)?));
         Ok(Self::start(engine, sheet))
     }
 

@@ -1,6 +1,6 @@
 //! Going on from a state with other supports, glue and contacts.
 
-use super::{Engine, check_energy};
+use super::{Engine, Steps, check_energy};
 use crate::contact::{Contact, ContactTerm};
 use crate::report::checkpoint_error::CheckpointError;
 use crate::{SheetModel, SimulationError};
@@ -27,7 +27,7 @@ impl Engine {
         model.clear_velocities(&fixed, &mut state.v);
         model.set_load(&state);
         check_energy(&model, &memories, &state)?;
-        let mut engine = Self::with_fixed(model, self.method.clone(), state, fixed)?;
+        let mut engine = Self::with_fixed(model, self.method.clone(), state, fixed, Steps::Taken)?;
         engine.set_control(self.control.clone())?;
         engine.motion.memories = memories;
         engine.motion.account = self.motion.account;
