@@ -875,14 +875,13 @@ impl Substeps<'_, '_> {
         });
         totals.plastic += settled.dissipated;
         totals.work += settled.work;
-        let is_fallback = self.proposer == Proposer::Fallback;
         if let Some(recorder) = &mut engine.recorder {
             let taken = engine.proposal.taken.take();
-            let taken = taken.map(|taken| accepted(*taken, before, motion, is_fallback));
+            let taken = taken.map(|taken| accepted(*taken, before, motion, self.proposer));
             let search = std::mem::take(&mut engine.proposal.search);
             search.into_iter().chain(taken).for_each(recorder);
         }
-        if is_fallback {
+        if self.proposer == Proposer::Fallback {
             // What the fallback remembers means nothing to the method that was asked for.
             motion.history.previous = None;
             motion.history.multipliers.clear();
@@ -900,9 +899,11 @@ impl Substeps<'_, '_> {
 }
 
 /// An accepted sub-step between two points of a motion.
-fn accepted(taken: Taken, before: &Motion, after: &Motion, is_fallback: bool) -> AcceptedStep {
+fn accepted(taken: Taken, before: &Motion, after: &Motion, proposer: Proposer) -> AcceptedStep {
     let mut events = taken.events;
-    events.extend(is_fallback.then_some(StepEvent::Fallback));
+    if proposer == Proposer::Fallback {
+        events.push(StepEvent::Fallback);
+    }
     AcceptedStep {
         kind: StepKind::Motion,
         start: before.state.clone(),

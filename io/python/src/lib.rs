@@ -18,6 +18,7 @@ mod arrays;
 mod commit;
 mod error;
 mod foreign;
+mod gradient;
 mod materials;
 mod mesh;
 mod picture;

@@ -1,9 +1,11 @@
 //! Scenes.
 
 use crate::error::{of_file, of_run};
+use crate::gradient::{Differentiated, gradient};
 use crate::mesh::Mesh;
 use crate::recorded::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
+use isosheet_adjoint::Branches;
 use isosheet_runs as run;
 use isosheet_runs::{StepPart, Tick, Watch};
 use isosheet_scenes::{Key, SceneFile, SceneFileError, StartingPoint};
@@ -230,6 +232,38 @@ impl Scene {
                 .unwrap_or_else(|| PyKeyboardInterrupt::new_err(()))),
             Some(recording) => Ok(Run { folder, recording }),
         }
+    }
+
+    /// Runs the scene and differentiates a loss of its positions by the values of keys, for about the price of
+    /// two runs (docs/gradients.md).
+    ///
+    /// ``loss(times, positions)`` gets arrays of the shapes (T,) and (T, V, 3), at the start and after each
+    /// step, and returns a number and its derivatives by the positions, of the same shape. Returns the number
+    /// and a dictionary with its derivatives by the keys. What has no derivative raises `Error`, which names
+    /// it with its time, or counts as constant with ``branches="pass by"``.
+    ///
+    ///     >>> def height(times, positions):
+    ///     ...     slopes = numpy.zeros_like(positions)
+    ///     ...     slopes[-1, 3, 2] = 1.0
+    ///     ...     return positions[-1, 3, 2], slopes
+    ///     >>> value, slopes = scene.gradient(height, of=["sheet.density", "forces.gravity[2]"])
+    #[pyo3(signature = (loss, of, branches = "refuse"))]
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        loss: &Bound<'py, PyAny>,
+        of: Vec<String>,
+        branches: &str,
+    ) -> PyResult<Differentiated<'py>> {
+        let branches = match branches {
+            "refuse" => Branches::Refuse,
+            "pass by" => Branches::PassBy,
+            other => {
+                let message = format!("branches is {other:?}; give \"refuse\" or \"pass by\"");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        gradient(py, &self.file, loss, of, branches)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -157,7 +157,8 @@ fn the_clamp_that_brings_the_tip_there() {
         ))
     };
     let (tip, target) = (13, 0.05);
-    let (found, _) = solve(&family, &at_rest(), 0.1, tip, target);
+    let (found, runs) = solve(&family, &at_rest(), 0.1, tip, target);
+    println!("{found} in {runs} runs");
     let run = Run::record(&family, &[found], at_rest(), AdjointOptions::default());
     let reached = run.expect("a run").value(&coordinate(tip, 2, 1));
     assert!((reached - target).abs() < 1e-9, "{reached}");

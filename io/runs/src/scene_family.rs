@@ -1,0 +1,244 @@
+//! Scenes as functions of the values of some keys, for gradients.
+
+use crate::steps::{step_count, step_length};
+use isosheet_adjoint::{Family, Plan, SceneError as NoScene};
+use isosheet_dynamics::contact::Contact;
+use isosheet_files::DataError;
+use isosheet_mesh::Advice;
+use isosheet_scenes::{Integration, Key, SceneFile, SceneFileError, Setup};
+use std::path::{Path, PathBuf};
+
+/// A scene as a function of the values of some of its keys: what `isosheet-adjoint` differentiates.
+///
+/// ```
+/// use isosheet_adjoint::{AdjointOptions, Run, coordinate};
+/// use isosheet_runs::SceneFamily;
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+/// let text = r#"
+/// version = 1
+/// [sheet]
+/// mesh = { square = { side = 0.3, level = 1 } }
+/// density = 0.08
+/// damping = 2.0
+/// [[support]]
+/// at = { nearest = [[0.0, 0.3, 0.0]] }
+/// [forces]
+/// gravity = [0.0, 0.0, -9.81]
+/// [stop]
+/// time = 0.05
+/// "#;
+/// let keys = ["sheet.damping", "forces.gravity[2]"].map(str::to_owned).to_vec();
+/// let family = SceneFamily::of_text(text, Path::new("hanging.toml"), Vec::new(), keys)?;
+/// let plan = family.plan()?;
+/// let last = plan.steps.len();
+/// let run = Run::record(&family, &family.values()?, plan, AdjointOptions::default())?;
+/// let gradient = run.gradient(&coordinate(4, 2, last))?;
+/// // It falls further with more weight, and less far with more damping.
+/// assert!(gradient.of_numbers[0] > 0.0 && gradient.of_numbers[1] > 0.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct SceneFamily {
+    text: String,
+    path: PathBuf,
+    edits: Vec<String>,
+    keys: Vec<String>,
+}
+
+/// Why a scene cannot be differentiated.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneFamilyError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneFileError),
+    /// A key has no number in the scene, or the scene is one that has no gradient.
+    #[error(transparent)]
+    Other(#[from] DataError),
+}
+
+impl Advice for SceneFamilyError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Scene(error) => error.advice(),
+            Self::Other(error) => error.advice(),
+        }
+    }
+}
+
+impl SceneFamily {
+    /// The scene of a file, with edits of the form `key=value`, as a function of some keys.
+    ///
+    /// # Errors
+    /// [`SceneFamilyError`] if the scene is wrong, or a key has no number in it.
+    pub fn read(
+        path: &Path,
+        edits: Vec<String>,
+        keys: Vec<String>,
+    ) -> Result<Self, SceneFamilyError> {
+        let file = SceneFile::read(path, &edits)?;
+        let text = file.text().text.clone();
+        Self::of_text(&text, path, Vec::new(), keys)
+    }
+
+    /// As [`SceneFamily::read`], of a text; `path` is for messages and relative paths.
+    ///
+    /// # Errors
+    /// As [`SceneFamily::read`].
+    pub fn of_text(
+        text: &str,
+        path: &Path,
+        edits: Vec<String>,
+        keys: Vec<String>,
+    ) -> Result<Self, SceneFamilyError> {
+        let family = Self {
+            text: text.to_owned(),
+            path: path.to_owned(),
+            edits,
+            keys,
+        };
+        let file = family.file(&[])?;
+        if file.scene().has_periods() {
+            let message = "something in the scene holds for a time, or until something happens";
+            let remedy = "differentiate the runs before and after it";
+            return Err(DataError::new(message, remedy).into());
+        }
+        family.values()?;
+        Ok(family)
+    }
+
+    /// The keys.
+    pub fn keys(&self) -> &[String] {
+        &self.keys
+    }
+
+    /// The values of the keys in the scene.
+    ///
+    /// # Errors
+    /// [`SceneFamilyError::Other`] if a key has no number.
+    pub fn values(&self) -> Result<Vec<f64>, SceneFamilyError> {
+        let file = self.file(&[])?;
+        let text: Option<toml::Value> = file.text().text.parse().ok().map(toml::Value::Table);
+        let value = |key: &String| {
+            let place: Key = key.parse().ok()?;
+            let found = place.find(text.as_ref()?)?;
+            found.as_float().or(found.as_integer().map(|n| n as f64))
+        };
+        let number = |key: &String| {
+            let message = || format!("`{key}` has no number in the scene");
+            let remedy = "name a key that the scene has, such as `sheet.density`";
+            value(key).ok_or_else(|| DataError::new(message(), remedy).into())
+        };
+        self.keys.iter().map(number).collect()
+    }
+
+    /// The method and the steps of the scene, up to its time.
+    ///
+    /// # Errors
+    /// [`SceneFamilyError`] if the scene cannot be built, or moves in a chart.
+    pub fn plan(&self) -> Result<Plan, SceneFamilyError> {
+        let file = self.file(&[])?;
+        let setup = file.build().map_err(SceneFileError::from)?;
+        let Integration::Free { method, control } = setup.integration else {
+            let message = "the scene moves in a chart, which has no gradient";
+            return Err(DataError::new(message, "use BDF2 or implicit Euler").into());
+        };
+        let scene = file.scene();
+        let numbers = 1..=step_count(scene);
+        Ok(Plan {
+            method,
+            control,
+            steps: numbers.map(|number| step_length(scene, number)).collect(),
+        })
+    }
+
+    /// The scene with values of the first keys.
+    fn file(&self, numbers: &[f64]) -> Result<SceneFile, SceneFileError> {
+        let values = self.keys.iter().zip(numbers);
+        let own = values.map(|(key, value)| format!("{key}={value:?}"));
+        let edits: Vec<String> = self.edits.iter().cloned().chain(own).collect();
+        SceneFile::parse(self.text.clone(), &self.path, &edits)
+    }
+}
+
+impl Family for SceneFamily {
+    fn scene(&self, numbers: &[f64]) -> Result<isosheet_adjoint::Scene, NoScene> {
+        let Setup {
+            model,
+            start,
+            contacts,
+            ..
+        } = self.file(numbers)?.build()?;
+        Ok(isosheet_adjoint::Scene {
+            model,
+            start,
+            contact: contacts.map(|contacts| Box::new(contacts) as Box<dyn Contact>),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_adjoint::{AdjointOptions, Run, coordinate};
+
+    const TEXT: &str = "\
+version = 1
+[sheet]
+mesh = { square = { side = 0.2, level = 1 } }
+material = 'office paper'
+[[support]]
+at = { nearest = [[0.0, 0.0, 0.0], [0.2, 0.0, 0.0]] }
+[forces]
+gravity = [0.0, 0.3, -9.81]
+[method]
+step = 0.01
+[stop]
+time = 0.055
+";
+
+    fn family(keys: &[&str]) -> Result<SceneFamily, SceneFamilyError> {
+        let keys = keys.iter().map(|key| (*key).to_owned()).collect();
+        SceneFamily::of_text(TEXT, Path::new("paper.toml"), Vec::new(), keys)
+    }
+
+    #[test]
+    fn gradients_by_keys_are_those_of_differences() {
+        let family = family(&["forces.gravity[1]", "forces.gravity[2]"]).expect("keys");
+        let values = family.values().expect("numbers");
+        assert_eq!(values, [0.3, -9.81]);
+        let plan = family.plan().expect("steps");
+        assert_eq!(plan.steps.len(), 6);
+        assert!((plan.steps[5] - 5e-3).abs() < 1e-12);
+        let loss = coordinate(24, 2, 6);
+        let value = |values: &[f64]| {
+            let options = AdjointOptions::default();
+            let run = Run::record(&family, values, plan.clone(), options).expect("a run");
+            (run.value(&loss), run.gradient(&loss).expect("a gradient"))
+        };
+        let (_, gradient) = value(&values);
+        for k in 0..2 {
+            // (The steps of a scene leave a part of the forces, and differences of runs have it.)
+            let h = 1e-2 * values[k];
+            let at = |change: f64| {
+                let mut moved = values.clone();
+                moved[k] += change;
+                value(&moved).0
+            };
+            let slope = (at(h) - at(-h)) / (2.0 * h);
+            let found = gradient.of_numbers[k];
+            assert!((found / slope - 1.0).abs() < 1e-2, "{k}: {found} {slope}");
+        }
+    }
+
+    #[test]
+    fn keys_without_a_number_are_refused() {
+        for key in ["sheet.material", "sheet.nothing", "obstacle[0].friction"] {
+            let error = family(&[key]).expect_err("no number");
+            assert!(error.to_string().contains(key), "{error}");
+            assert!(error.advice().is_some());
+        }
+    }
+}
