@@ -30,9 +30,9 @@ def test_a_gradient_is_that_of_differences():
     value, slopes = scene().gradient(height, of=KEYS)
     assert list(slopes) == KEYS
     for key, at in zip(KEYS, (0.3, 1.0)):
-        h = 1e-2 * at
+        h = 1e-3 * at
         up, down = (scene({key: at + s * h}).gradient(height, of=[])[0] for s in (1, -1))
-        assert abs((up - down) / (2 * h) - slopes[key]) < 2e-2 * abs(slopes[key])
+        assert abs((up - down) / (2 * h) - slopes[key]) < 1e-3 * abs(slopes[key])
         assert down != value != up
 
 
