@@ -10,6 +10,7 @@ use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, refuse_file_of_run, to_stdout};
 use clap::Args;
 use isosheet_drawings::Length;
+use isosheet_files::FileError;
 use isosheet_films::{FilmOptions, Marks};
 use isosheet_formats::{
     ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshFileProblem, MeshFormat, MeshOptions,
@@ -140,10 +141,9 @@ impl Convert {
         if self.input.is_dir() {
             return self.convert_run();
         }
-        if !self.input.exists() {
-            let message = format!("there is no {}", self.input.display());
-            let remedy = "name the folder of a run, a trajectory (.npz) or a mesh file";
-            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        if let Err(error) = std::fs::metadata(&self.input) {
+            let error = FileError::unreadable(&self.input, error);
+            return Err(Failure::of(Code::Input, &error));
         }
         if self
             .input

@@ -23,6 +23,7 @@ mod flat;
 mod forces;
 mod hard;
 mod invariance;
+mod inverse;
 mod load_orders;
 mod loads;
 mod locking;

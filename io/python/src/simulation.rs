@@ -262,8 +262,8 @@ impl Simulation {
     /// raised.
     ///
     /// Without changes between the steps the files have the bits of the files of the command, but for wall
-    /// times. The scene in the folder has what was driven as it went, and ends where the recording does; what else
-    /// was changed is in ``run.summary["control"]``.
+    /// times. The scene in the folder has what was driven as it went, and ends where the recording does; what
+    /// else was changed is in ``run.summary["control"]``.
     ///
     ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
     ///     >>> with simulation.record("hanging-run", every=1):

@@ -148,8 +148,8 @@ impl Lines<'_> {
             }
         }
         let length = sum[0].hypot(sum[1]);
-        // A line within a face has no direction to speak of, nor has one between faces that bend otherwise, as
-        // where the curvature changes its sign.
+        // A line within a face has no direction to speak of, nor has one between faces that bend otherwise:
+        // the curvature changes its sign there.
         let line = self.traced(f, sum.map(|c| c / length));
         if let Some(line) = line.filter(|line| line.faces.len() > 1 && line.has_an_end) {
             line.faces

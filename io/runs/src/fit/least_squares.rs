@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Where the differences are taken, the part of a parameter's range. Derivatives are of second order, so that
-/// they are right to some 1e-6 where a target is smooth; runs are exact to some 1e-9, and differences over less
-/// would be those of their tolerances.
+/// they are right to some 1e-6 where a target is smooth; runs are exact to some 1e-9, and differences over
+/// less would be differences of their tolerances.
 pub(super) const DIFFERENCE: f64 = 1e-3;
 
 /// A combination of parameters is determined whose effect is more than this part of the largest one, each
@@ -129,8 +129,8 @@ pub(super) fn least_squares<E>(
     }))
 }
 
-/// The derivatives of the differences: central ones, at the ends of ranges of second order from inside, and of
-/// first order where the run at one place fails.
+/// The derivatives of the differences: central ones, at the ends of ranges of second order from inside, and
+/// of first order where the run at one place fails.
 fn jacobian<E>(point: &Point, evaluate: &mut Evaluate<'_, E>) -> Result<Option<DMatrix<f64>>, E> {
     let steps = |at: f64| match at {
         _ if at < DIFFERENCE => [DIFFERENCE, 2.0 * DIFFERENCE],

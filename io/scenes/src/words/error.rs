@@ -155,7 +155,7 @@ pub enum MessageStyle {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     problems: Vec<Problem>,
-    text: Option<SceneText>,
+    text: Option<Box<SceneText>>,
 }
 
 impl SceneError {
@@ -186,7 +186,7 @@ impl SceneError {
     /// The error, shown at its place in a text.
     #[must_use]
     pub fn in_text(mut self, text: &SceneText) -> Self {
-        self.text = Some(text.clone());
+        self.text = Some(Box::new(text.clone()));
         self
     }
 

@@ -1,0 +1,132 @@
+//! An inverse problem of origami, solved by gradients.
+
+use isosheet::adjoint::{AdjointOptions, Family, Plan, Run, Scene, SceneError, coordinate};
+use isosheet::dynamics::{
+    CreaseSpring, CreaseSprings, ImplicitOptions, Material, Method, SheetModel, State,
+};
+use isosheet::io::read_mesh;
+use isosheet::mesh::{EdgeId, Sheet};
+use nalgebra::{DMatrix, DVector};
+use std::path::Path;
+
+/// A coordinate of a vertex at rest, and the value that it is to have.
+type Target = (usize, usize, f64);
+
+/// Numbers with which a scene at rest has some coordinates, and the number of runs: the method of Gauss and
+/// Newton with a gradient of each coordinate from one run. A step that leads further away is halved.
+fn solved(family: &dyn Family, start: &[f64], targets: &[Target]) -> (Vec<f64>, usize) {
+    let run_of =
+        |numbers: &[f64]| Run::record(family, numbers, at_rest(), AdjointOptions::default()).ok();
+    let differences = |run: &Run<'_>| {
+        let values = targets
+            .iter()
+            .map(|(vertex, axis, wanted)| run.value(&coordinate(*vertex, *axis, 1)) - wanted);
+        DVector::from_iterator(targets.len(), values)
+    };
+    let mut numbers = start.to_vec();
+    let mut run = run_of(&numbers).expect("a run at the start");
+    let mut runs = 1;
+    while differences(&run).amax() > 1e-8 {
+        let mut jacobian = DMatrix::zeros(targets.len(), numbers.len());
+        for (mut row, (vertex, axis, _)) in jacobian.row_iter_mut().zip(targets) {
+            let gradient = run.gradient(&coordinate(*vertex, *axis, 1)).unwrap();
+            row.copy_from_slice(&gradient.of_numbers);
+        }
+        let before = differences(&run);
+        let step = jacobian.svd(true, true).solve(&before, 1e-12).unwrap();
+        let mut part = 1.0;
+        (numbers, run) = loop {
+            let next: Vec<f64> = numbers
+                .iter()
+                .zip(step.iter())
+                .map(|(number, step)| number - part * step)
+                .collect();
+            runs += 1;
+            assert!(runs <= 30, "not found: {numbers:?}, {before:?}");
+            match run_of(&next).filter(|run| differences(run).norm() < before.norm()) {
+                Some(run) => break (next, run),
+                None => part /= 2.0,
+            }
+        };
+    }
+    (numbers, runs)
+}
+
+fn at_rest() -> Plan {
+    let options = ImplicitOptions {
+        tolerance: Some(1e-10),
+        ..ImplicitOptions::default()
+    };
+    Plan::steps(Method::Equilibrium(options), 1.0, 1)
+}
+
+fn paper() -> Material {
+    let mut paper = Material::office_paper();
+    (paper.rigidity, paper.stiffness, paper.poisson) = (3e-4, 3e4, 0.0);
+    paper
+}
+
+/// Which angles of its creases bring a vertex of a third-party pattern to a place? The angles of mountains
+/// and of valleys, and the vertex of Miura's pattern that moves most while a face is held.
+#[test]
+fn the_crease_angles_of_a_pattern_from_the_place_of_a_vertex() {
+    let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
+        println!("skipped: ISOSHEET_DATA names no folder");
+        return;
+    };
+    let pattern = Path::new(&data).join("fold/miura_herringbone_8x8_tri.fold");
+    let mesh = read_mesh(&pattern).unwrap();
+    let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).unwrap();
+    let side = sheet.area().sqrt();
+    let sheet = sheet.map_positions(|p| p.map(|c| 0.1 * c / side)).unwrap();
+    let t = sheet.topology();
+    let creases: Vec<(EdgeId, f64)> = mesh
+        .creases
+        .iter()
+        .filter_map(|crease| {
+            let [a, b] = crease.ends.map(isosheet::mesh::VertexId);
+            let edge = t.find_edge(a, b)?;
+            let angle = crease.angle.filter(|angle| *angle != 0.0)?;
+            Some((edge, angle.signum()))
+        })
+        .collect();
+    assert!(creases.len() >= 4, "{}", creases.len());
+    let edges: Vec<EdgeId> = creases.iter().map(|(e, _)| *e).collect();
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let springs = creases.iter().map(|(edge, sign)| CreaseSpring {
+            edge: *edge,
+            stiffness: 1e-3,
+            rest: if *sign > 0.0 { p[0] } else { -p[1] }.into(),
+            yields: None,
+            in_series: None,
+        });
+        let springs = CreaseSprings::new(t, springs.collect())?;
+        let held = t.faces()[0];
+        let model = SheetModel::of_material(&sheet, &paper())
+            .creased(&edges)
+            .build()?
+            .with_pins(&held)?
+            .with_potential(springs);
+        Ok(Scene::new(
+            model,
+            State::at_rest(sheet.positions().to_vec()),
+        ))
+    };
+    let asked = [0.7, 0.6];
+    let made = Run::record(&family, &asked, at_rest(), AdjointOptions::default()).unwrap();
+    let end = &made.states()[1];
+    let away = |v: usize| {
+        (0..3)
+            .map(|k| (end.x[3 * v + k] - sheet.positions()[3 * v + k]).powi(2))
+            .sum::<f64>()
+    };
+    let vertex = (0..t.vertex_count())
+        .max_by(|a, b| away(*a).total_cmp(&away(*b)))
+        .unwrap();
+    let targets: Vec<Target> = (0..3).map(|k| (vertex, k, end.x[3 * vertex + k])).collect();
+    let (found, runs) = solved(&family, &[0.5, 0.5], &targets);
+    println!("{found:?} in {runs} runs");
+    for (found, asked) in found.iter().zip(asked) {
+        assert!((found / asked - 1.0).abs() < 1e-4, "{found} {asked}");
+    }
+}
