@@ -71,6 +71,9 @@ mod book {
     #[doc = include_str!("../../docs/rust.md")]
     pub struct InRust;
 
+    #[doc = include_str!("../../docs/gradients.md")]
+    pub struct Gradients;
+
     #[doc = include_str!("../../docs/contribute.md")]
     pub struct Contribute;
 }

@@ -234,8 +234,8 @@ impl Scene {
         }
     }
 
-    /// Runs the scene and differentiates a loss of its positions by the values of keys, for about the price of
-    /// two runs (docs/gradients.md).
+    /// Runs the scene and differentiates a loss of its positions by the values of keys, for about the price
+    /// of two runs (docs/gradients.md).
     ///
     /// ``loss(times, positions)`` gets arrays of the shapes (T,) and (T, V, 3), at the start and after each
     /// step, and returns a number and its derivatives by the positions, of the same shape. Returns the number
