@@ -135,8 +135,8 @@ impl SceneFamily {
         self.keys.iter().map(number).collect()
     }
 
-    /// The method and the steps of the scene, up to its time. Steps are solved to [`TOLERANCE`], as the
-    /// gradient is that of equations which are solved.
+    /// The method and the steps of the scene, up to its time. The tolerance of the steps is 1e-10
+    /// ([`ImplicitOptions::tolerance`]), as the gradient is that of equations which are solved.
     ///
     /// # Errors
     /// [`SceneFamilyError`] if the scene cannot be built, or moves in a chart.
