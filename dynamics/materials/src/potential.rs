@@ -547,11 +547,16 @@ pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);
 
+    /// Whether the force is a function of time alone. The default says that it is not.
+    fn is_of_time_alone(&self) -> bool {
+        false
+    }
+
     /// Adds to `of_x` and `of_v` (`3V`) the derivatives of `w . f` by positions and velocities, with the
     /// vector `w` (`3V`).
     ///
     /// # Errors
-    /// [`NoDerivative`], the default.
+    /// [`NoDerivative`], the default of a force that is not a function of time alone.
     fn add_state_products(
         &self,
         _t: f64,
@@ -561,7 +566,10 @@ pub trait Force: Debug + Send + Sync {
         _of_x: &mut [f64],
         _of_v: &mut [f64],
     ) -> Result<(), NoDerivative> {
-        Err(NoDerivative::of_type::<Self>("positions and velocities"))
+        match self.is_of_time_alone() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("positions and velocities")),
+        }
     }
 }
 

@@ -13,14 +13,14 @@ use crate::{Recording, RunError, simulate_recorded};
 use isosheet_files::DataError;
 use isosheet_formats::read_mesh;
 use isosheet_mesh::wording::given;
-use isosheet_scenes::SceneFile;
+use isosheet_scenes::{Edit, SceneFile};
 use least_squares::{DETERMINED, DIFFERENCE, Minimum, Point, combinations, least_squares};
 use nalgebra::DVector;
+use std::cell::Cell;
 use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// Where the runs of a fit end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,8 +120,8 @@ pub struct Fitted {
     pub scene: SceneFile,
 }
 
-/// The largest difference of a target that is met, a part of the one at the start or of its standard
-/// deviation.
+/// The largest difference of a measure that is met without a standard deviation, a part of the one at the
+/// start of the search.
 const MET: f64 = 1e-3;
 
 impl ReachedTarget {
@@ -154,13 +154,10 @@ impl Fit {
             return Err(FitError::Keys(DataError::new("no target is given", remedy)));
         }
         let file = SceneFile::read(path, &edits)?;
-        let text: Option<toml::Value> = file.text().text.parse().ok().map(toml::Value::Table);
-        let in_scene = |range: &FitRange| range.place().find(text.as_ref()?);
         let mut notes = Vec::new();
         let mut start = Vec::new();
         for range in &ranges {
-            let value = in_scene(range);
-            let value = value.and_then(|v| v.as_float().or(v.as_integer().map(|n| n as f64)));
+            let value = file.number(range.place());
             start.push(value.map_or(0.5, |value| range.part(value)));
             let [from, to] = range.ends();
             if let Some(value) = value.filter(|value| !(from..=to).contains(value)) {
@@ -182,13 +179,14 @@ impl Fit {
         };
         let built = fit.scene(&fit.start).and_then(|file| Ok(file.build()?));
         let setup = built.map_err(|error| {
-            let is_whole = |range: &&FitRange| in_scene(range).is_some_and(|v| v.is_integer());
-            let whole = fit.ranges.iter().filter(is_whole);
-            let mut refused = whole.filter(|range| {
-                let edit = format!("{}={:?}", range.key(), range.value(0.5));
-                SceneFile::read(path, &[edit]).is_err()
-            });
-            match refused.next() {
+            let takes = |range: &FitRange, value: String| {
+                SceneFile::read(path, &[format!("{}={value}", range.key())]).is_ok()
+            };
+            let is_whole = |range: &&FitRange| {
+                let value = range.value(0.5).round();
+                takes(range, format!("{value}")) && !takes(range, format!("{value:?}"))
+            };
+            match fit.ranges.iter().find(is_whole) {
                 Some(range) => FitError::Whole {
                     key: range.key().to_owned(),
                 },
@@ -277,8 +275,8 @@ impl Fit {
     fn scene(&self, at: &[f64]) -> Result<SceneFile, isosheet_scenes::SceneFileError> {
         // (A key that is set and varied has the value of the point alone.)
         let is_varied = |edit: &&String| {
-            let key = edit.split('=').next().unwrap_or_default().trim();
-            self.ranges.iter().any(|range| range.key() == key)
+            let edit: Option<Edit> = edit.parse().ok();
+            edit.is_some_and(|edit| self.ranges.iter().any(|range| *range.place() == edit.key))
         };
         let own = self.edits.iter().filter(|edit| !is_varied(edit)).cloned();
         let edits: Vec<String> = own.chain(self.edits_at(at)).collect();
@@ -339,34 +337,25 @@ impl Fit {
     }
 
     /// Makes the runs of some points at once.
-    fn run_all(
+    fn run_all<'p>(
         &self,
-        points: &[Vec<f64>],
+        points: &'p [Vec<f64>],
         folder: &Path,
         jobs: NonZero<usize>,
         watch: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Vec<Result<DVector<f64>, FitError>> {
-        let next = AtomicUsize::new(0);
-        let done = Mutex::new(Vec::new());
-        std::thread::scope(|scope| {
-            for _ in 0..jobs.get().min(points.len()) {
-                scope.spawn(|| {
-                    loop {
-                        let k = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(at) = points.get(k) else {
-                            break;
-                        };
-                        let found = self.run_at(at, &folder.join(k.to_string()), watch);
-                        done.lock()
-                            .unwrap_or_else(PoisonError::into_inner)
-                            .push((k, found));
-                    }
-                });
-            }
-        });
-        let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-        done.sort_by_key(|(k, _)| *k);
-        done.into_iter().map(|(_, found)| found).collect()
+        let mut found = Vec::with_capacity(points.len());
+        for points in points.chunks(jobs.get()) {
+            std::thread::scope(|scope| {
+                let run = |(k, at): (usize, &'p Vec<f64>)| {
+                    scope.spawn(move || self.run_at(at, &folder.join(k.to_string()), watch))
+                };
+                let runs: Vec<_> = points.iter().enumerate().map(run).collect();
+                let ended = runs.into_iter().map(|run| run.join());
+                found.extend(ended.map(|run| run.unwrap_or_else(|panic| resume_unwind(panic))));
+            });
+        }
+        found
     }
 
     /// Finds the values, with `jobs` runs at a time in a folder for temporary files. The result does not
@@ -390,10 +379,10 @@ impl Fit {
             at: self.start.clone(),
             differences: differences?,
         };
-        let runs = AtomicUsize::new(1);
+        let runs = Cell::new(1);
         let mut failures = Vec::new();
         let mut evaluate = |points: &[Vec<f64>]| {
-            runs.fetch_add(points.len(), Ordering::Relaxed);
+            runs.set(runs.get() + points.len());
             let found = self.run_all(points, folder, jobs, watch).into_iter();
             let one = |found: Result<_, FitError>| match found {
                 Ok(differences) => Ok(Some(differences)),
@@ -408,7 +397,7 @@ impl Fit {
         let mut tell = |point: &Point| {
             let values = self.ranges.iter().zip(&point.at);
             progress(&FitProgress {
-                runs: runs.load(Ordering::Relaxed),
+                runs: runs.get(),
                 values: values
                     .map(|(r, part)| (r.key().to_owned(), r.value(*part)))
                     .collect(),
@@ -424,7 +413,7 @@ impl Fit {
             text.lines().next().unwrap_or_default().to_owned()
         });
         let failed = last.map(|why| (failures.len(), why));
-        self.fitted(&start, &minimum, runs.into_inner(), failed)
+        self.fitted(&start, &minimum, runs.get(), failed)
     }
 
     /// What was found, in words of the scene.
@@ -545,13 +534,11 @@ fn check_keys(ranges: &[FitRange]) -> Result<(), FitError> {
         return wrong("no key is varied".to_owned(), "give `--vary KEY=FROM..TO`");
     }
     for (k, range) in ranges.iter().enumerate() {
-        let parts = range.place().parts();
-        let others = ranges[..k].iter();
-        let within = |other: &&FitRange| {
-            let own = other.place().parts();
-            parts.starts_with(own) || own.starts_with(parts)
+        let overlaps = |other: &&FitRange| {
+            let (own, other) = (range.place(), other.place());
+            own.is_within(other) || other.is_within(own)
         };
-        if let Some(other) = others.into_iter().find(within) {
+        if let Some(other) = ranges[..k].iter().find(overlaps) {
             let message = format!("`{}` and `{}` change one value", other.key(), range.key());
             return wrong(message, "leave one of them out");
         }

@@ -121,16 +121,11 @@ impl SceneFamily {
     /// [`SceneFamilyError::Other`] if a key has no number.
     pub fn values(&self) -> Result<Vec<f64>, SceneFamilyError> {
         let file = self.file(&[])?;
-        let text: Option<toml::Value> = file.text().text.parse().ok().map(toml::Value::Table);
-        let value = |key: &String| {
-            let place: Key = key.parse().ok()?;
-            let found = place.find(text.as_ref()?)?;
-            found.as_float().or(found.as_integer().map(|n| n as f64))
-        };
         let number = |key: &String| {
+            let found = key.parse().ok().and_then(|key: Key| file.number(&key));
             let message = || format!("`{key}` has no number in the scene");
             let remedy = "name a key that the scene has, such as `sheet.density`";
-            value(key).ok_or_else(|| DataError::new(message(), remedy).into())
+            found.ok_or_else(|| DataError::new(message(), remedy).into())
         };
         self.keys.iter().map(number).collect()
     }

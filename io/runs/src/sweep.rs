@@ -28,7 +28,7 @@ pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
 use isosheet_files::{DataError, FileError, input, write_atomically};
-use isosheet_scenes::{Edit, KeyPart, SceneFile, SceneFileError};
+use isosheet_scenes::{Edit, Key, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -69,27 +69,21 @@ impl Sweep {
             let error = DataError::new("a sweep needs a key with values", remedy);
             return Err(SweepError::Keys(error));
         }
-        let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
+        let places: Vec<_> = variations.iter().map(Variation::place).collect();
         for edit in &edits {
             // One that is none is refused where the scene is read.
             let Ok(Edit { key: place, .. }) = edit.parse() else {
                 continue;
             };
-            if let Some(i) = places
-                .iter()
-                .position(|over| place.parts().starts_with(over))
-            {
+            if let Some(i) = places.iter().position(|over| place.is_within(over)) {
                 let message = format!("the values of `{}` overwrite `{edit}`", variations[i].key());
                 let error = DataError::new(message, "take the edit out");
                 return Err(SweepError::Keys(error));
             }
         }
         for (j, second) in places.iter().enumerate() {
-            let contained = |first: &&[KeyPart]| {
-                let common = first.len().min(second.len());
-                first[..common] == second[..common]
-            };
-            if let Some(i) = places[..j].iter().position(contained) {
+            let overlaps = |first: &&Key| first.is_within(second) || second.is_within(first);
+            if let Some(i) = places[..j].iter().position(overlaps) {
                 let [first, second] = [i, j].map(|k| variations[k].key());
                 let message = format!("`{first}` and `{second}` change the same part of the scene");
                 let error = DataError::new(message, "give one key with all its values");

@@ -1,6 +1,6 @@
 //! Gradients of runs without contact.
 
-use crate::support::{bdf2, checked, exact};
+use crate::support::{as_meshed, bdf2, checked, exact};
 use isosheet_adjoint::{Plan, Scene, SceneError, coordinate};
 use isosheet_dynamics::{
     Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Material, MaterialDirection,
@@ -36,10 +36,7 @@ fn hanging_rods() {
         let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
             .with_acceleration([0.0, push, -p[0]])
             .with_moving_pin(corner, move |t: f64| [x, y, z + lift * t * t])?;
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 8);
     let loss = coordinate(40, 2, 8);
@@ -62,10 +59,7 @@ fn hanging_membrane() {
             .with_acceleration([0.0, 0.1, -p[0]])
             .with_pins(&[VertexId(0), VertexId(8)])?
             .with_elastic_sheet(ElasticSheet::new(&sheet, p[1], p[3])?)?;
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     for (name, method) in [
         ("hanging membrane, BDF2", bdf2()),
@@ -94,10 +88,7 @@ fn clamped_film() {
             .clamped(&clamp)
             .build()?
             .with_acceleration([0.0, 0.0, -p[4]]);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let film = film();
     let numbers = [
@@ -131,10 +122,7 @@ fn rods_with_a_plate() {
             .with_gravity()
             .with_pins(&[VertexId(0)])?
             .with_potential(PlateBending::new(&sheet, plate)?);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 6);
     let loss = coordinate(40, 2, 6);
@@ -183,10 +171,7 @@ fn pulled_and_turned() {
         };
         let load = VertexLoad::new(sheet.topology(), &middle, [0.0, 0.3, 1.0], size)?;
         let model = model.with_force(load);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 10);
     let loss = coordinate(5, 2, 10);
@@ -241,10 +226,7 @@ fn folded_and_curled() {
             .build()?
             .with_gravity()
             .with_potential(springs);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 10);
     let loss = coordinate(8, 2, 10);
@@ -263,10 +245,7 @@ fn another_rest_shape() {
             .clamped(&clamp)
             .build()?
             .with_gravity();
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
     let loss = coordinate(8, 2, 8);
@@ -285,10 +264,7 @@ fn swollen() {
             .swelling(p[0])
             .build()?
             .with_gravity();
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 1e-2, 8);
     let loss = coordinate(8, 2, 8);
@@ -313,10 +289,7 @@ fn in_the_wind() {
             .with_elastic_sheet(ElasticSheet::new(&sheet, 300.0, 0.3)?)?
             .with_damping(p[2])?
             .with_air(air)?;
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 10);
     let loss = coordinate(40, 1, 10);

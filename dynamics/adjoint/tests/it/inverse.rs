@@ -1,7 +1,7 @@
 //! Closed forms, and searches that gradients lead.
 
 use crate::search::minimise;
-use crate::support::exact;
+use crate::support::{as_meshed, exact};
 use isosheet_adjoint::{
     AdjointOptions, Family, OfState, Plan, Run, Scene, SceneError, Share, coordinate,
     squared_distances,
@@ -39,10 +39,7 @@ fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
         .clamped(&clamp)
         .build()?
         .with_acceleration([0.0, 0.0, -9.8]);
-    Ok(Scene::new(
-        model,
-        State::at_rest(sheet.positions().to_vec()),
-    ))
+    Ok(as_meshed(model, &sheet))
 }
 
 /// The sag over the length of an inextensible elastica under its weight, by shooting:
@@ -125,10 +122,7 @@ fn the_rigidity_from_the_sag() {
             .clamped(&clamp)
             .build()?
             .with_gravity();
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let (tip, rigidity) = (13, 4.2e-4);
     let run = Run::record(&family, &[rigidity], at_rest(), AdjointOptions::default());
@@ -198,10 +192,7 @@ fn the_curl_by_patches_of_a_shape() {
             .curled(curl)
             .build()?
             .with_acceleration([0.0, 0.0, -0.5]);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let wanted = [2.0, -1.0, 3.0];
     let run = Run::record(&family, &wanted, at_rest(), AdjointOptions::default());
@@ -250,10 +241,7 @@ fn the_rest_shape_of_a_strip_that_is_straight_under_load() {
             .curved()
             .build()?
             .with_acceleration([0.0, 0.0, -0.5]);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let columns = 2..cells as usize + 2;
     // Only the heights count: the targets are where the strip would be.

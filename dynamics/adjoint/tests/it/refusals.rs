@@ -1,6 +1,6 @@
 //! What has no derivative, and what cannot be differentiated.
 
-use crate::support::bdf2;
+use crate::support::{as_meshed, bdf2};
 use isosheet_adjoint::{
     AdjointError, AdjointOptions, Branches, Kept, OfState, Plan, Run, Scene, SceneError, Share,
     coordinate,
@@ -72,10 +72,7 @@ fn a_sheet_that_yields_is_refused() {
             .yielding(Yield::perfect(1e-4))
             .build()?
             .with_acceleration([0.0, 0.0, -p[0]]);
-        Ok(Scene::new(
-            model,
-            State::at_rest(sheet.positions().to_vec()),
-        ))
+        Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(Method::default(), 2e-2, 6);
     let run = Run::record(&family, &[9.8], plan, AdjointOptions::default()).expect("a run");

@@ -2,7 +2,6 @@
 
 use crate::rigid_body::CarriedPoint;
 use crate::sheet_model::load::{LoadError, direction};
-use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Force;
 use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
@@ -41,17 +40,8 @@ impl Force for BodyForce {
         }
     }
 
-    /// It depends on time alone.
-    fn add_state_products(
-        &self,
-        _t: f64,
-        _x: &[f64],
-        _v: &[f64],
-        _w: &[f64],
-        _of_x: &mut [f64],
-        _of_v: &mut [f64],
-    ) -> Result<(), NoDerivative> {
-        Ok(())
+    fn is_of_time_alone(&self) -> bool {
+        true
     }
 }
 

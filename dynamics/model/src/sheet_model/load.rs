@@ -1,6 +1,5 @@
 //! Prescribed forces: loads on vertices and fields of acceleration whose size follows a profile.
 
-use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Force;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Topology, VertexId};
@@ -142,17 +141,8 @@ impl Force for VertexLoad {
         }
     }
 
-    /// It depends on time alone.
-    fn add_state_products(
-        &self,
-        _t: f64,
-        _x: &[f64],
-        _v: &[f64],
-        _w: &[f64],
-        _of_x: &mut [f64],
-        _of_v: &mut [f64],
-    ) -> Result<(), NoDerivative> {
-        Ok(())
+    fn is_of_time_alone(&self) -> bool {
+        true
     }
 }
 
@@ -197,17 +187,8 @@ impl Force for AccelerationField {
         }
     }
 
-    /// It depends on time alone.
-    fn add_state_products(
-        &self,
-        _t: f64,
-        _x: &[f64],
-        _v: &[f64],
-        _w: &[f64],
-        _of_x: &mut [f64],
-        _of_v: &mut [f64],
-    ) -> Result<(), NoDerivative> {
-        Ok(())
+    fn is_of_time_alone(&self) -> bool {
+        true
     }
 }
 

@@ -200,6 +200,13 @@ impl SceneFile {
         })
     }
 
+    /// The number at a key of the text, if there is one.
+    pub fn number(&self, key: &Key) -> Option<f64> {
+        let whole = self.text().text.parse().ok().map(toml::Value::Table)?;
+        let value = key.find(&whole)?;
+        value.as_float().or(value.as_integer().map(|n| n as f64))
+    }
+
     /// The folder that its paths are relative to.
     pub fn folder(&self) -> &Path {
         &self.folder

@@ -72,7 +72,7 @@ impl Key {
     }
 
     /// Whether the key is another one, or leads on from it.
-    pub(crate) fn is_within(&self, other: &Self) -> bool {
+    pub fn is_within(&self, other: &Self) -> bool {
         self.0.starts_with(&other.0)
     }
 
