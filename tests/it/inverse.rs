@@ -1,11 +1,14 @@
-//! An inverse problem of origami, solved by gradients.
+//! Gradients of runs: an inverse problem of origami, and bits on several threads.
 
-use isosheet::adjoint::{AdjointOptions, Family, Plan, Run, Scene, SceneError, coordinate};
+use isosheet::adjoint::{
+    AdjointOptions, Branches, Family, Plan, Run, Scene, SceneError, coordinate,
+};
+use isosheet::collide::{Coefficients, Contacts, Obstacle, Shape};
 use isosheet::dynamics::{
     CreaseSpring, CreaseSprings, ImplicitOptions, Material, Method, SheetModel, State,
 };
 use isosheet::io::read_mesh;
-use isosheet::mesh::{EdgeId, Sheet};
+use isosheet::mesh::{EdgeId, Sheet, generate};
 use nalgebra::{DMatrix, DVector};
 use std::path::Path;
 
@@ -129,4 +132,40 @@ fn the_crease_angles_of_a_pattern_from_the_place_of_a_vertex() {
     for (found, asked) in found.iter().zip(asked) {
         assert!((found / asked - 1.0).abs() < 1e-4, "{found} {asked}");
     }
+}
+
+/// The gradient of a fall of paper onto a ball has bits that do not depend on the threads: a sheet of as many
+/// vertices as steps are shared from.
+#[test]
+fn bits_of_gradients_do_not_depend_on_threads() {
+    let sheet = generate::disk(30, 0.1).unwrap();
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let model = SheetModel::of_material(&sheet, &Material::office_paper()).build()?;
+        let model = model.with_acceleration([0.0, 0.0, -p[0]]);
+        let ball = Obstacle::at(Shape::Sphere { radius: 0.05 }, [0.01, 0.0, -0.0505])?;
+        let contacts = Contacts::for_sheet(&model, [ball], Coefficients::equal(p[1]))?;
+        let start = State::at_rest(sheet.positions().to_vec());
+        Ok(Scene::new(model, start).with_contact(contacts))
+    };
+    let found = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(|| {
+            let plan = Plan::steps(Method::default(), 5e-3, 2);
+            let options = AdjointOptions {
+                branches: Branches::PassBy,
+                ..AdjointOptions::default()
+            };
+            let run = Run::record(&family, &[9.8, 0.3], plan, options).unwrap();
+            let gradient = run.gradient(&coordinate(0, 2, 2)).unwrap();
+            let all = [
+                gradient.of_numbers,
+                gradient.of_start.x,
+                gradient.of_start.v,
+            ]
+            .concat();
+            all.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+        })
+    });
+    assert!(found[0].iter().any(|bits| *bits != 0));
+    assert_eq!(found[0], found[1]);
 }

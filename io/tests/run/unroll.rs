@@ -265,6 +265,49 @@ fn rulings_of_a_cone_go_from_rim_to_rim_and_meet_at_its_apex() {
     }
 }
 
+/// A cone whose mesh is a grid of squares, which no ruling follows: its lines do not cross.
+#[test]
+fn rulings_that_no_edge_follows_do_not_cross() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (n, side, sine) = (24, 0.1, 0.5);
+    let mut text = String::new();
+    for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))) {
+        // Around the apex in the plane, and in space around the axis by `1 / sine` times the angle.
+        let [x, y] = [i, j].map(|k| side * k as f64 / n as f64);
+        let (r, angle) = (
+            (x + 0.02).hypot(y - 0.04),
+            (y - 0.04).atan2(x + 0.02) / sine,
+        );
+        let cosine = f64::sqrt(1.0 - sine * sine);
+        let (s, c) = angle.sin_cos();
+        writeln!(text, "v {} {} {}", r * sine * c, r * sine * s, -r * cosine).unwrap();
+    }
+    for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
+        let a = j * (n + 1) + i + 1;
+        writeln!(text, "f {a} {} {}", a + 1, a + n + 2).unwrap();
+        writeln!(text, "f {a} {} {}", a + n + 2, a + n + 1).unwrap();
+    }
+    fs::write(folder.join("cone.obj"), text).unwrap();
+    let strain = ["--unit", "m", "--strain", "0.01"];
+    unrolled(folder, "cone.obj", "cone.svg", &strain);
+    let lines = guides(&folder.join("cone.svg"));
+    assert!(lines.len() > n, "{}", lines.len());
+    let side_of = |[p, q]: &[[f64; 2]; 2], x: &[f64; 2]| {
+        (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])
+    };
+    // Lines may end at each other, to round-off of drawings.
+    let parts = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| {
+        let [one, other] = [0, 1].map(|k| side_of(a, &b[k]));
+        one * other < 0.0 && one.abs().min(other.abs()) > 1e-6
+    };
+    for (k, a) in lines.iter().enumerate() {
+        for b in &lines[..k] {
+            assert!(!(parts(a, b) && parts(b, a)), "{a:?} crosses {b:?}");
+        }
+    }
+}
+
 /// What is asked for and cannot be is refused with what to do, and no file is written.
 #[test]
 fn what_cannot_be_unrolled_is_refused() {
