@@ -1,5 +1,5 @@
-//! Gradients of runs: how a number that depends on positions and velocities at chosen times, a *loss*,
-//! changes with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run,
+//! Gradients of runs: how a number that depends on positions, velocities, forces of supports and energies at
+//! chosen times, a *loss*, changes with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run,
 //! and a little more for each parameter: two scenes, and evaluations of what the parameter changes.
 //!
 //! | | |
@@ -7,7 +7,8 @@
 //! | [`Family`], [`Scene`] | the scene as a function of numbers; a closure is one |
 //! | [`Plan`] | method and steps: BDF2, implicit Euler, searches for equilibria |
 //! | [`Run`] | the run with its accepted steps |
-//! | [`Loss`] | the number; a closure is one, and [`coordinate`] and [`squared_distances`] are others |
+//! | [`Loss`] | the number; a closure is one, and [`coordinate`], [`squared_distances`], [`support_force`] and [`energy`] are others |
+//! | [`Moment`] | what a loss may look at |
 //! | [`Gradient`] | its derivatives by the numbers and by the state at the start |
 //! | [`AdjointError`] | what has no derivative, with the time and what to do |
 //!
@@ -39,7 +40,7 @@
 //!     rigidity -= (gradient.value - measured) / gradient.of_numbers[0]; // Newton's method
 //! }
 //! let run = Run::record(&strip, &[rigidity], plan, AdjointOptions::default())?;
-//! assert!((run.value(&height) - measured).abs() < 1e-6);
+//! assert!((run.value(&height)? - measured).abs() < 1e-6);
 //! # Ok(())
 //! # }
 //! ```
@@ -68,8 +69,10 @@ mod factor;
 mod family;
 mod gradient;
 mod krylov;
+mod level;
 mod loss;
 mod memory;
+mod moment;
 mod neighbours;
 mod options;
 mod rows;
@@ -81,7 +84,8 @@ pub use error::{AdjointError, SceneError};
 pub use family::{Family, Plan, Scene};
 pub use gradient::{Effort, Gradient, PassedBy};
 pub use isosheet_dynamics::sensitivity::{OfState, StepEvent};
-pub use loss::{Loss, Share, coordinate, squared_distances};
+pub use loss::{Loss, OfMoments, Share, coordinate, energy, squared_distances, support_force};
+pub use moment::{Energies, Moment, View};
 pub use options::{AdjointOptions, Branches, Kept};
 pub use run::Run;
 

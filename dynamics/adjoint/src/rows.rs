@@ -3,7 +3,7 @@
 use isosheet_dynamics::sensitivity::AcceptedStep;
 use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
-use isosheet_model::SheetModel;
+use isosheet_model::{PINNED, SheetModel};
 use nalgebra::{Matrix3, Vector3};
 
 /// The Jacobian `G` of the equations: a row for each rod, and three for each vertex constraint, which are
@@ -36,6 +36,13 @@ impl<'a> Rows<'a> {
     /// Number of rows.
     pub(crate) fn len(&self) -> usize {
         self.model.rods().len() + 3 * self.supports.len()
+    }
+
+    /// Whether a row is that of a rod between two pins, which has no part in a step: its multiplier is zero.
+    pub(crate) fn is_between_pins(&self, row: usize) -> bool {
+        let rod = self.model.rods().edges().get(row);
+        let free = self.model.free_index();
+        rod.is_some_and(|ends| ends.iter().all(|v| free[*v] == PINNED))
     }
 
     /// The vertex constraints, with their Jacobians.
@@ -72,6 +79,40 @@ impl<'a> Rows<'a> {
         for (row, (v, jacobian)) in rows.zip(&self.supports) {
             add(out, *v, &jacobian.tr_mul(&Vector3::from(*row)));
         }
+    }
+
+    /// The forces `-J^T L / h^2` of the vertex constraints of a model at positions `x` and the time of the end
+    /// of a step (`3V`, newtons).
+    pub(crate) fn forces(model: &SheetModel, step: &AcceptedStep, x: &[f64]) -> Vec<f64> {
+        let t = step.start.t + step.span;
+        let scale = -1.0 / (step.h * step.h);
+        let mut forces = vec![0.0; x.len()];
+        for (c, l) in model.constraints().iter().zip(&step.constraints) {
+            let local = c.at(t, &point(x, c.vertex()));
+            add(&mut forces, c.vertex(), &(scale * local.jacobian.tr_mul(l)));
+        }
+        forces
+    }
+
+    /// With derivatives `of_forces` of a number by the forces of vertex constraints: those by the multipliers
+    /// of all rows, and adds those by the positions to `of_x`.
+    pub(crate) fn pull_forces(
+        &self,
+        step: &AcceptedStep,
+        of_forces: &[f64],
+        of_x: &mut [f64],
+    ) -> Vec<f64> {
+        let t = step.start.t + step.span;
+        let scale = -1.0 / (step.h * step.h);
+        let mut of_multipliers = vec![0.0; self.model.rods().len()];
+        let constraints = self.model.constraints().iter().zip(&step.constraints);
+        for ((c, l), (v, jacobian)) in constraints.zip(&self.supports) {
+            let of = scale * point(of_forces, *v);
+            of_multipliers.extend((jacobian * of).iter());
+            let hessian = c.at(t, &point(self.x, *v)).hessian(l);
+            add(of_x, *v, &(hessian * of));
+        }
+        of_multipliers
     }
 
     /// The equations of a model that is like this one, at positions `x` and the time of the end of a step.

@@ -4,6 +4,7 @@ use crate::error::AdjointError;
 use crate::family::{Family, Plan, Scene};
 use crate::gradient::Gradient;
 use crate::loss::Loss;
+use crate::moment::{Seen, View};
 use crate::neighbours::Neighbours;
 use crate::options::{AdjointOptions, Kept};
 use crate::sweep::Sweep;
@@ -11,6 +12,7 @@ use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::sensitivity::AcceptedStep;
 use isosheet_dynamics::{Checkpoint, Simulation};
 use isosheet_model::State;
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The accepted sub-steps of each step of a part of a plan.
@@ -104,10 +106,37 @@ impl<'f> Run<'f> {
     }
 
     /// The value of a loss, without its gradient.
-    pub fn value(&self, loss: &dyn Loss) -> f64 {
-        let shares = self.states.iter().enumerate();
-        let shares = shares.filter_map(|(n, state)| Some(loss.share(n, state)?.value));
-        shares.sum()
+    ///
+    /// # Errors
+    /// [`AdjointError`] if what it [looks at](Loss::view) cannot be evaluated.
+    pub fn value(&self, loss: &dyn Loss) -> Result<f64, AdjointError> {
+        let last = self.plan.steps.len();
+        let mut base = match (0..=last).any(|n| loss.view(n) == View::All) {
+            true => Some(equations(self.family, &self.numbers, &self.plan, None)?),
+            false => None,
+        };
+        let mut see = |n: usize, step: Option<&AcceptedStep>| match (loss.view(n), &mut base) {
+            (View::All, Some(base)) => Seen::of(base, &self.states[n], step),
+            _ => Ok(Seen::default()),
+        };
+        let value = |n: usize, seen: &Seen| {
+            let share = loss.share(n, &seen.moment(&self.states[n]));
+            share.map_or(0.0, |share| share.value)
+        };
+        let mut sum = value(0, &see(0, None)?);
+        for part in &self.parts {
+            let numbers = part.first + 1..=part.first + part.count;
+            let is_seen = numbers.clone().any(|n| loss.view(n) == View::All);
+            let steps = match is_seen {
+                true => Some(self.steps_of(part)?),
+                false => None,
+            };
+            for (k, n) in numbers.enumerate() {
+                let last = steps.as_ref().and_then(|steps| steps[k].last());
+                sum += value(n, &see(n, last)?);
+            }
+        }
+        Ok(sum)
     }
 
     /// The gradient of a loss by the numbers of the scene and by the state at its start.
@@ -121,25 +150,37 @@ impl<'f> Run<'f> {
             sweep.add_number(self.neighbours(number)?)?;
         }
         let mut value = 0.0;
-        for part in self.parts.iter().rev() {
-            let made_again;
-            let steps = match &part.content {
-                Content::Steps(steps) => steps,
-                Content::Checkpoint(checkpoint) => {
-                    made_again = self.take_again(part, checkpoint)?;
-                    &made_again
-                }
+        let mut add = |sweep: &mut Sweep<'_>, n: usize, step: Option<&AcceptedStep>| {
+            let state = &self.states[n];
+            let seen = match loss.view(n) {
+                View::All => sweep.see(state, step)?,
+                View::State => Seen::default(),
             };
+            let Some(share) = loss.share(n, &seen.moment(state)) else {
+                return Ok(());
+            };
+            value += share.value;
+            sweep.add_share(&share, n, state, &seen)
+        };
+        for part in self.parts.iter().rev() {
+            let steps = self.steps_of(part)?;
             for (k, sub_steps) in steps.iter().enumerate().rev() {
-                let n = part.first + k + 1;
-                value += sweep.add_share(loss, n, &self.states[n])?;
+                add(&mut sweep, part.first + k + 1, sub_steps.last())?;
                 for step in sub_steps.iter().rev() {
                     sweep.step_back(step)?;
                 }
             }
         }
-        value += sweep.add_share(loss, 0, &self.states[0])?;
+        add(&mut sweep, 0, None)?;
         sweep.finish(&self.states[0], value)
+    }
+
+    /// The accepted sub-steps of a part: those that are kept, or made again.
+    fn steps_of<'a>(&self, part: &'a Part) -> Result<Cow<'a, Steps>, AdjointError> {
+        match &part.content {
+            Content::Steps(steps) => Ok(Cow::Borrowed(steps)),
+            Content::Checkpoint(checkpoint) => self.take_again(part, checkpoint).map(Cow::Owned),
+        }
     }
 
     /// The simulations with a number that is larger and smaller, and the distance of these.

@@ -4,8 +4,10 @@ use crate::blocks::Blocks;
 use crate::error::AdjointError;
 use crate::factor::Factor;
 use crate::gradient::{Effort, Gradient, PassedBy};
-use crate::loss::Loss;
+use crate::level::{Level, levels};
+use crate::loss::Share;
 use crate::memory::{choices, pull_settling, settled_products, start_memories};
+use crate::moment::{Energies, Seen};
 use crate::neighbours::Neighbours;
 use crate::options::{AdjointOptions, Branches};
 use crate::rows::Rows;
@@ -30,46 +32,13 @@ pub(crate) struct Sweep<'o> {
     earlier: OfState,
     /// By what the potentials remember there.
     memory: Vec<Vec<f64>>,
+    /// By the forces of supports in the step that ends there, `3V`; empty for most.
+    of_forces: Vec<f64>,
     of_numbers: Vec<f64>,
     blocks: Blocks,
     factor: Option<Factor>,
     passed_by: Vec<PassedBy>,
     effort: Effort,
-}
-
-/// A place of a step at which its equations were solved, and where friction was lagged then.
-#[derive(Clone, Copy)]
-struct Level<'a> {
-    x: &'a [f64],
-    lag: FrictionLag<'a>,
-    /// Whether friction was lagged until it had settled, so that it is that of the place itself.
-    is_settled: bool,
-}
-
-/// The places at which the equations of a step were solved, the last one first.
-///
-/// An elastic sheet solves for a minimum with lagged friction, lags friction there, and begins anew: each of
-/// these minima depends on the one before. A sheet of rods lags friction in the course of its iteration.
-fn levels<'a>(model: &SheetModel, step: &'a AcceptedStep) -> Vec<Level<'a>> {
-    let last = &step.end.x;
-    if !model.rods().is_empty() && !step.lags.is_empty() {
-        return vec![Level {
-            x: last,
-            lag: FrictionLag::Places(last),
-            is_settled: true,
-        }];
-    }
-    let places = step.lags.iter().chain([last]);
-    let lags = step.lags.iter().map(|y| FrictionLag::Places(y));
-    let lags = [FrictionLag::Start].into_iter().chain(lags);
-    let levels = places.zip(lags).map(|(x, lag)| Level {
-        x,
-        lag,
-        is_settled: false,
-    });
-    let mut levels: Vec<Level<'a>> = levels.collect();
-    levels.reverse();
-    levels
 }
 
 impl<'o> Sweep<'o> {
@@ -82,6 +51,7 @@ impl<'o> Sweep<'o> {
             earlier: OfState::zeros(n),
             memory: zeros_like(base.memories()),
             base,
+            of_forces: Vec::new(),
             neighbours: Vec::new(),
             of_numbers: Vec::new(),
             blocks: Blocks::of(&model),
@@ -120,34 +90,108 @@ impl<'o> Sweep<'o> {
         Ok(())
     }
 
-    /// Adds what the state after `n` steps of the plan contributes to a loss; its value.
+    /// What a loss may look at, at a state: the start, or the end of a step.
     ///
     /// # Errors
-    /// [`AdjointError::LossLength`].
+    /// [`AdjointError::Equations`].
+    pub(crate) fn see(
+        &mut self,
+        state: &State,
+        step: Option<&AcceptedStep>,
+    ) -> Result<Seen, AdjointError> {
+        Seen::of(&mut self.base, state, step)
+    }
+
+    /// Adds what the state after `n` steps of the plan contributes to a loss.
+    ///
+    /// # Errors
+    /// [`AdjointError::LossLength`], [`AdjointError::NoDerivative`].
     pub(crate) fn add_share(
         &mut self,
-        loss: &dyn Loss,
+        share: &Share,
         n: usize,
         state: &State,
-    ) -> Result<f64, AdjointError> {
-        let Some(share) = loss.share(n, state) else {
-            return Ok(0.0);
-        };
+        seen: &Seen,
+    ) -> Result<(), AdjointError> {
         let expected = state.x.len();
+        let wrong = |found| AdjointError::LossLength {
+            step: n,
+            found,
+            expected,
+        };
         for (own, added) in [
             (&mut self.end.x, &share.of.x),
             (&mut self.end.v, &share.of.v),
         ] {
             if added.len() != expected {
-                return Err(AdjointError::LossLength {
-                    step: n,
-                    found: added.len(),
-                    expected,
-                });
+                return Err(wrong(added.len()));
             }
             own.iter_mut().zip(added).for_each(|(o, a)| *o += a);
         }
-        Ok(share.value)
+        let of_forces = share.of_forces.as_flattened();
+        if !of_forces.is_empty() && of_forces.len() != expected {
+            return Err(wrong(of_forces.len()));
+        }
+        self.of_forces = match n {
+            // There are none at the start.
+            0 => Vec::new(),
+            _ => of_forces.to_vec(),
+        };
+        match &seen.memories {
+            Some(memories) => self.add_energies(&share.of_energies, state, memories),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds derivatives by energies at a state.
+    fn add_energies(
+        &mut self,
+        of: &Energies,
+        state: &State,
+        memories: &Memories,
+    ) -> Result<(), AdjointError> {
+        let model = Arc::clone(&self.model);
+        let State { t, x, v } = state;
+        if of.kinetic != 0.0 {
+            let mut momentum = vec![0.0; v.len()];
+            model.mass().apply(model.topology(), v, &mut momentum);
+            for (own, p) in self.end.v.iter_mut().zip(&momentum) {
+                *own += of.kinetic * p;
+            }
+            for neighbours in &self.neighbours {
+                let [up, down] = neighbours
+                    .simulations
+                    .each_ref()
+                    .map(|simulation| simulation.model().kinetic_energy(v));
+                self.of_numbers[neighbours.number] +=
+                    of.kinetic * (up - down) / neighbours.distance;
+            }
+        }
+        let potentials = model.potentials_at(*t, x, memories).enumerate();
+        for ((k, (potential, at)), weight) in potentials.zip(&of.potentials) {
+            if *weight == 0.0 {
+                continue;
+            }
+            let mut slope = vec![0.0; x.len()];
+            potential.add_gradient(at, &mut slope);
+            for (own, s) in self.end.x.iter_mut().zip(&slope) {
+                *own += weight * s;
+            }
+            for neighbours in self.neighbours.iter().filter(|n| !n.same[k]) {
+                let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
+                    let mut potentials = simulation.model().potentials();
+                    potentials.nth(k).map_or(0.0, |p| p.energy(at))
+                });
+                self.of_numbers[neighbours.number] += weight * (up - down) / neighbours.distance;
+            }
+            if let Some(remembering) = potential.remembering() {
+                let added = remembering.add_memory_slopes(at, *weight, &mut self.memory[k]);
+                if let Err(source) = added {
+                    self.refuse(*t, source)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Goes back over an accepted sub-step.
@@ -178,19 +222,22 @@ impl<'o> Sweep<'o> {
         let mut pinned = vec![0.0; n];
         let model = Arc::clone(&self.model);
         let mut at_level = of_x;
+        let mut of_forces = std::mem::take(&mut self.of_forces);
+        let is_zero = |of: &[f64]| of.iter().all(|x| *x == 0.0);
         for level in levels(&model, step) {
-            if at_level.iter().all(|x| *x == 0.0) && of_v.iter().all(|v| *v == 0.0) {
+            if is_zero(&at_level) && is_zero(&of_v) && is_zero(&of_forces) {
                 at_level.fill(0.0);
                 break;
             }
             at_level = self.level_back(
                 step,
                 level,
-                (&at_level, &of_v),
+                (&at_level, &of_v, &of_forces),
                 (&mut of_start, &mut of_before),
                 &mut pinned,
             )?;
             of_v.fill(0.0);
+            of_forces.clear();
         }
         self.pins_back(step, &pinned, &mut of_start);
         if of_start.x.iter().chain(&of_start.v).any(|d| !d.is_finite()) {
@@ -240,7 +287,7 @@ impl<'o> Sweep<'o> {
         &mut self,
         step: &AcceptedStep,
         level: Level<'_>,
-        (of_x, of_v): (&[f64], &[f64]),
+        (of_x, of_v, of_forces): (&[f64], &[f64], &[f64]),
         (of_start, of_before): (&mut OfState, &mut OfState),
         pinned: &mut [f64],
     ) -> Result<Vec<f64>, AdjointError> {
@@ -262,6 +309,7 @@ impl<'o> Sweep<'o> {
             lag: level.lag,
             is_settled: level.is_settled,
             of_x,
+            of_forces,
             rows: &rows,
             blocks: &mut self.blocks,
             factor: &mut self.factor,
@@ -284,7 +332,7 @@ impl<'o> Sweep<'o> {
                 }
             }
         }
-        self.numbers_back(step, level, (&w, &multipliers), &pairs)?;
+        self.numbers_back(step, level, (&w, &multipliers, of_forces), &pairs)?;
         let mut next = vec![0.0; n];
         let mut equations = self
             .base
@@ -317,12 +365,13 @@ impl<'o> Sweep<'o> {
         Ok(next)
     }
 
-    /// Adds `-w . dR/dp` and `-m . dc/dp` of a place to the derivatives by the numbers.
+    /// Adds `-w . dR/dp` and `-m . dc/dp` of a place to the derivatives by the numbers, and what these do to the
+    /// forces of vertex constraints.
     fn numbers_back(
         &mut self,
         step: &AcceptedStep,
         level: Level<'_>,
-        (w, multipliers): (&[f64], &[f64]),
+        (w, multipliers, of_forces): (&[f64], &[f64], &[f64]),
         pairs: &ReachedPairs,
     ) -> Result<(), AdjointError> {
         let t = step.end.t;
@@ -362,6 +411,9 @@ impl<'o> Sweep<'o> {
                 if !multipliers.is_empty() {
                     let values = Rows::values(&model, step, &x);
                     *end += dot(multipliers, &values);
+                }
+                if !of_forces.is_empty() {
+                    *end -= dot(of_forces, &Rows::forces(&model, step, &x));
                 }
             }
             let slope = (ends[0] - ends[1]) / neighbours.distance;

@@ -29,7 +29,9 @@ const UNSOLVED: f64 = 1e-6;
 /// K^T w + G^T m = l on the free vertices,   G w = 0,
 /// ```
 ///
-/// the derivative `K` of the residual of a step by the positions at its end, and those `l` of a loss.
+/// the derivative `K` of the residual of a step by the positions at its end, and those `l` of a loss. A loss of
+/// the forces `R / h^2` at pins and `-J^T L / h^2` of vertex constraints, with derivatives `f` by these, gives
+/// `w = -f / h^2` at pins, and `G w` its derivatives by `L`.
 pub(crate) struct Request<'a, 'o> {
     pub(crate) simulation: &'a mut Simulation,
     pub(crate) step: &'a AcceptedStep,
@@ -37,6 +39,8 @@ pub(crate) struct Request<'a, 'o> {
     pub(crate) lag: FrictionLag<'a>,
     pub(crate) is_settled: bool,
     pub(crate) of_x: &'a [f64],
+    /// `f`, `3V`; empty where the loss does not depend on forces.
+    pub(crate) of_forces: &'a [f64],
     pub(crate) rows: &'a Rows<'a>,
     pub(crate) blocks: &'a mut Blocks,
     pub(crate) factor: &'a mut Option<Factor>,
@@ -46,7 +50,7 @@ pub(crate) struct Request<'a, 'o> {
 
 /// The solution.
 pub(crate) struct Solution {
-    /// `3V`, zero at pinned vertices.
+    /// `3V`.
     pub(crate) w: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     /// `K^T w + G^T m` on all vertices.
@@ -71,6 +75,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         lag,
         is_settled,
         of_x,
+        of_forces,
         rows,
         blocks,
         factor,
@@ -105,9 +110,7 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
     }
     let free = 3 * model.free_count();
     let mut b = vec![0.0; free + rows.len()];
-    let mut space = Space::new(&model, rows.len());
-    space.full.copy_from_slice(of_x);
-    space.gather_add(&mut b[..free]);
+    let space = Space::new(&model, rows.len());
     let mut z = vec![0.0; b.len()];
     let mut operator = Operator {
         model: &model,
@@ -122,6 +125,24 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
         out: vec![0.0; x.len()],
         passed: Vec::new(),
     };
+    let at_pins = operator.at_pins(of_forces);
+    let mut of_x = of_x.to_vec();
+    if !of_forces.is_empty() {
+        let of_multipliers = rows.pull_forces(step, of_forces, &mut of_x);
+        b[free..].copy_from_slice(&of_multipliers);
+        operator.image(&at_pins, &vec![0.0; rows.len()]);
+        of_x.iter_mut()
+            .zip(&operator.out)
+            .for_each(|(o, i)| *o -= i);
+        rows.apply(&at_pins, &mut operator.space.rows);
+        for (row, (b, g)) in b[free..].iter_mut().zip(&operator.space.rows).enumerate() {
+            if !rows.is_between_pins(row) {
+                *b -= g;
+            }
+        }
+    }
+    operator.space.full.copy_from_slice(&of_x);
+    operator.space.gather_add(&mut b[..free]);
     effort.systems += 1;
     let tolerance = options.tolerance;
     let mut solved;
@@ -151,7 +172,10 @@ pub(crate) fn solve(request: Request<'_, '_>) -> Result<Solution, AdjointError> 
     effort.residual = effort.residual.max(solved.residual);
     let (w, multipliers) = z.split_at(free);
     operator.space.scatter(w);
-    let w = operator.space.full.clone();
+    let mut w = at_pins;
+    w.iter_mut()
+        .zip(&operator.space.full)
+        .for_each(|(w, own)| *w += own);
     operator.image(&w, multipliers);
     let mut passed = std::mem::take(&mut operator.passed);
     passed.dedup();
@@ -198,6 +222,18 @@ impl Operator<'_, '_> {
         let rows = self.factor.penalties.iter();
         weights.extend(rows.map(|r| if *r > 0.0 { STIFFNESS / r } else { 0.0 }));
         weights
+    }
+
+    /// `w` at pins (`3V`, zero elsewhere) of a loss with derivatives by forces.
+    fn at_pins(&self, of_forces: &[f64]) -> Vec<f64> {
+        let mut w = vec![0.0; self.x.len()];
+        let scale = -1.0 / (self.step.h * self.step.h);
+        for (i, (w, of)) in w.iter_mut().zip(of_forces).enumerate() {
+            if self.model.free_index()[i / 3] == PINNED {
+                *w = scale * of;
+            }
+        }
+        w
     }
 
     /// Derivatives of `w . R` by what potentials remember.

@@ -612,6 +612,32 @@ impl Remembering for ElasticSheet {
         Ok(())
     }
 
+    fn add_memory_slopes(
+        &self,
+        at: At<'_>,
+        scale: f64,
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let barrier = barrier_of(at.memory);
+        let [of_barrier, of_bends @ ..] = of_memory else {
+            return Ok(());
+        };
+        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
+        let rows = of_bends.as_chunks_mut::<NUMBERS>().0.iter_mut();
+        for ((face, bend), row) in self.faces.iter().zip(bends).zip(rows) {
+            let bend = Bend::remembered(bend);
+            let (chords, squared, stiffness) = face.slopes(at, &bend, barrier);
+            *of_barrier += scale * stiffness;
+            if !self.arcs.is_empty() {
+                row.iter_mut()
+                    .zip(&chords)
+                    .for_each(|(r, c)| *r += scale * c);
+                row[4] += scale * squared;
+            }
+        }
+        Ok(())
+    }
+
     fn pull_back_settling(
         &self,
         state: Reached<'_>,

@@ -215,6 +215,22 @@ pub trait Remembering {
         }
     }
 
+    /// Adds to `of_memory` `scale` times the derivatives of the energy by the numbers of the memory.
+    ///
+    /// # Errors
+    /// [`NoDerivative`], the default of a potential that remembers anything.
+    fn add_memory_slopes(
+        &self,
+        _at: At<'_>,
+        _scale: f64,
+        _of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        match self.memory().is_empty() {
+            true => Ok(()),
+            false => Err(NoDerivative::of_type::<Self>("what it remembers")),
+        }
+    }
+
     /// Of [`Remembering::settle`] at a state, with the memory that it found and its
     /// [choices](Remembering::choices): makes the derivatives of a
     /// number by the memory that it left those by the memory that it found, and adds those by the positions

@@ -149,6 +149,16 @@ impl<P: Potential> Remembering for Stiffening<P> {
         self.remembers().add_memory_products(at, &w, of_memory)
     }
 
+    fn add_memory_slopes(
+        &self,
+        at: At<'_>,
+        scale: f64,
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        let scale = self.factor.value(at.t) * scale;
+        self.remembers().add_memory_slopes(at, scale, of_memory)
+    }
+
     fn pull_back_settling(
         &self,
         state: Reached<'_>,

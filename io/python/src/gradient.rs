@@ -51,7 +51,7 @@ pub(crate) fn gradient<'py>(
         of.x.copy_from_slice(own);
         own.iter()
             .any(|slope| *slope != 0.0)
-            .then_some(Share { value: 0.0, of })
+            .then_some(Share::of_state(0.0, of))
     };
     let gradient = run.gradient(&share).map_err(failed)?;
     let by_keys = PyDict::new(py);

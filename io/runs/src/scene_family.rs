@@ -231,7 +231,10 @@ time = 0.055
         let value = |values: &[f64]| {
             let options = AdjointOptions::default();
             let run = Run::record(&family, values, plan.clone(), options).expect("a run");
-            (run.value(&loss), run.gradient(&loss).expect("a gradient"))
+            (
+                run.value(&loss).expect("a value"),
+                run.gradient(&loss).expect("a gradient"),
+            )
         };
         let (_, gradient) = value(&values);
         for k in 0..2 {

@@ -127,6 +127,7 @@ fn the_rigidity_from_the_sag() {
     let (tip, rigidity) = (13, 4.2e-4);
     let run = Run::record(&family, &[rigidity], at_rest(), AdjointOptions::default());
     let measured = run.expect("a run").value(&coordinate(tip, 2, 1));
+    let measured = measured.expect("a height");
     let (found, runs) = solve(&family, &at_rest(), 8e-4, tip, measured);
     println!("{found} in {runs} runs");
     assert!((found / rigidity - 1.0).abs() < 1e-6, "{found}");
@@ -155,6 +156,7 @@ fn the_clamp_that_brings_the_tip_there() {
     println!("{found} in {runs} runs");
     let run = Run::record(&family, &[found], at_rest(), AdjointOptions::default());
     let reached = run.expect("a run").value(&coordinate(tip, 2, 1));
+    let reached = reached.expect("a height");
     assert!((reached - target).abs() < 1e-9, "{reached}");
 }
 
@@ -254,7 +256,7 @@ fn the_rest_shape_of_a_strip_that_is_straight_under_load() {
                 value += 0.5 * z * z;
                 of.x[3 * v + 2] = z;
             }
-            Share { value, of }
+            Share::of_state(value, of)
         })
     };
     let start = vec![0.0; 30];

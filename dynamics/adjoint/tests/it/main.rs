@@ -2,6 +2,7 @@
 
 mod contact;
 mod differences;
+mod forces;
 mod inverse;
 mod refusals;
 mod search;

@@ -158,7 +158,7 @@ fn losses_of_other_states_are_refused() {
     let run = Run::record(&family, &[9.8], plan(), AdjointOptions::default()).expect("a run");
     let loss = |n: usize, _: &State| {
         let of = OfState::zeros(5);
-        (n == 3).then_some(Share { value: 0.0, of })
+        (n == 3).then_some(Share::of_state(0.0, of))
     };
     let error = run.gradient(&loss).expect_err("another length");
     assert!(

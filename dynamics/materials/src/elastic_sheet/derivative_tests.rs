@@ -116,3 +116,46 @@ fn what_is_remembered_has_its_derivatives() {
         }
     }
 }
+
+/// The energy by what was remembered: chords and squared bends of faces, and the stiffness of the barrier.
+#[test]
+fn the_energy_has_its_derivatives_by_what_is_remembered() {
+    for seed in 0..4 {
+        let (elastic, [first, mut second, _], mut random) = scene(seed);
+        // Within the limit of the strain.
+        for row in second.as_chunks_mut::<3>().0 {
+            row[2] *= 0.1;
+        }
+        let v = vec![0.0; first.len()];
+        let mut memory = elastic.memory();
+        elastic.settle(at(&first, &v), &mut memory);
+        let energy = |memory: &[f64]| elastic.energy(At::new(0.0, &second).with_memory(memory));
+        let mut of = vec![0.0; memory.len()];
+        let here = At::new(0.0, &second).with_memory(&memory);
+        elastic
+            .add_memory_slopes(here, 2.0, &mut of)
+            .expect("a derivative");
+        for own in [0, 1, 2, 3, 4, 5] {
+            let direction = memory.iter().enumerate();
+            let direction: Vec<f64> = direction
+                .map(|(i, m)| match i > 0 && (i - 1) % NUMBERS == own {
+                    true => m * random(),
+                    false => 0.0,
+                })
+                .collect();
+            let slope: f64 = direction.iter().zip(&of).map(|(d, o)| 0.5 * d * o).sum();
+            let along = |s: f64| {
+                let moved = memory.iter().zip(&direction).map(|(m, d)| m + s * d);
+                energy(&moved.collect::<Vec<f64>>())
+            };
+            let h = 1e-4;
+            let expected =
+                (8.0 * (along(h) - along(-h)) - (along(2.0 * h) - along(-2.0 * h))) / (12.0 * h);
+            let error = (slope - expected).abs();
+            // (What is left is the round-off of the energy.)
+            let bound = 1e-6 * expected.abs() + 1e-15 * along(0.0) / h;
+            assert!(error <= bound, "by {own}: {slope:e} {expected:e}");
+        }
+        assert!(of[1..].iter().any(|o| *o != 0.0));
+    }
+}

@@ -2,11 +2,15 @@
 
 use crate::StepError;
 use crate::sheet_model::SheetModel;
-use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
+use crate::term::{
+    Exchange, Formula, ImplicitForce, Iterate, StartProducts, StepStart, Term, Value,
+};
 use isosheet_materials::HessianSink;
 use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
-use isosheet_materials::potential::{At, Force, Potential, Reached, Remembering, Settled};
+use isosheet_materials::potential::{
+    At, Force, HessianKind, Potential, Reached, Remembering, Settled,
+};
 use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, VertexId, angle_near};
@@ -194,6 +198,11 @@ impl Potential for JointSpring {
         hessian.add_vertex(self.coordinate.vertices[0].0, &block);
     }
 
+    /// The derivatives by the vertices on the axis are left out.
+    fn hessian_kind(&self) -> HessianKind {
+        HessianKind::Partial
+    }
+
     fn is_driven(&self) -> bool {
         !self.rest.is_constant()
     }
@@ -218,6 +227,15 @@ impl Remembering for JointSpring {
         &self,
         _at: At<'_>,
         _w: &[f64],
+        _of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        Ok(())
+    }
+
+    fn add_memory_slopes(
+        &self,
+        _at: At<'_>,
+        _scale: f64,
         _of_memory: &mut [f64],
     ) -> Result<(), NoDerivative> {
         Ok(())
@@ -334,6 +352,37 @@ impl Term for DamperStep {
         let g = self.direction;
         let block = self.damper.coefficient / self.h * g * g.transpose();
         sink.add_vertex(self.damper.coordinate.vertices[0].0, &block);
+    }
+
+    fn add_start_products(
+        &mut self,
+        step: &StepStart<'_>,
+        at: Iterate<'_>,
+        w: &[f64],
+        scale: f64,
+        out: &mut StartProducts,
+    ) -> Result<(), NoDerivative> {
+        let Damper {
+            coordinate,
+            coefficient,
+        } = &self.damper;
+        let g = self.direction;
+        let along = coordinate.arm(w);
+        let moved = coordinate.arm(at.x) - coordinate.arm(step.rest);
+        let size = scale * coefficient / self.h;
+        let of_moved = size * g.dot(&along) * g;
+        let of_direction = size * (g.dot(&moved) * along + g.dot(&along) * moved);
+        let of_ahead = coordinate.curvature(step.ahead) * of_direction;
+        let [(moving, _), ..] = coordinate.vertices;
+        for (v, part) in coordinate.vertices {
+            add(&mut out.rest, v, &(-part * of_moved));
+            add(&mut out.ahead, v, &(part * of_ahead));
+            add(&mut out.end, v, &(part * of_moved));
+        }
+        // The Hessian has this.
+        let own = size * g.dot(&point(w, moving)) * g;
+        add(&mut out.end, moving, &-own);
+        Ok(())
     }
 
     /// The work on the free vertices: by the force at the end, or of a two-step formula by the mean of those

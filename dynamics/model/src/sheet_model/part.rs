@@ -206,6 +206,16 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
             .add_memory_products(self.own(at), w, of_memory)
     }
 
+    fn add_memory_slopes(
+        &self,
+        at: At<'_>,
+        scale: f64,
+        of_memory: &mut [f64],
+    ) -> Result<(), NoDerivative> {
+        self.remembers()
+            .add_memory_slopes(self.own(at), scale, of_memory)
+    }
+
     fn pull_back_settling(
         &self,
         state: Reached<'_>,

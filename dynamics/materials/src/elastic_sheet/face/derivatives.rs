@@ -39,6 +39,25 @@ impl Face {
         (-(law * along), squared, of_barrier.dot(&along))
     }
 
+    /// Derivatives of the energy: by the chords of the bend, by the squared bend, and by the stiffness of
+    /// the barrier.
+    pub(in super::super) fn slopes(
+        &self,
+        here: At<'_>,
+        bend: &Bend,
+        barrier: f64,
+    ) -> (Vector3<f64>, f64, f64) {
+        let at = self.at(here, bend);
+        let of_chords = -self.area * self.law_at(&at).slope();
+        // (The energy is linear in the stiffness.)
+        let of_barrier = self.energy(&at, barrier + 1.0) - self.energy(&at, barrier);
+        (
+            of_chords,
+            self.energy_by_bend(&at, bend.squared),
+            of_barrier,
+        )
+    }
+
     /// The law at the length errors of a state, with another squared bend.
     fn law_with<T>(&self, at: &Strained, squared: f64, take: impl FnOnce(law::At<'_>) -> T) -> T {
         let bend = Bend {
