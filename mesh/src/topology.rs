@@ -187,13 +187,19 @@ impl Topology {
         if a == v { b } else { a }
     }
 
-    /// The edge between two vertices, in either order; `None` when there is none. O(log E).
+    /// The edge between two vertices, in either order; `None` where there is none, or no such
+    /// vertex. It looks through the edges of the vertex that has fewer.
     pub fn find_edge(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
-        let key = (a.min(b), a.max(b));
-        self.edges
-            .binary_search_by_key(&key, |&[p, q]| (p.min(q), p.max(q)))
-            .ok()
-            .map(EdgeId::from_index)
+        if a == b || a.max(b).index() >= self.vertex_count() {
+            return None;
+        }
+        let [of_a, of_b] = [a, b].map(|v| self.vertex_edges(v));
+        let (own, other) = match of_a.len() <= of_b.len() {
+            true => (of_a, b),
+            false => (of_b, a),
+        };
+        let meets = |e: &&EdgeId| self.edges[e.index()].contains(&other);
+        own.iter().find(meets).copied()
     }
 
     /// The corner of `f` that is not an end of its edge `e`; `f` must have the edge `e`.

@@ -4,7 +4,7 @@ use cpu_time::ProcessTime;
 use isosheet_adjoint::{AdjointOptions, Family, Plan, Run, Scene, SceneError, coordinate};
 use isosheet_collide::{Coefficients, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Material, Method, SheetModel, State};
-use isosheet_mesh::{MassKind, VertexId, generate};
+use isosheet_mesh::{FaceId, MassKind, VertexId, generate};
 
 fn rods(p: &[f64]) -> Result<Scene, SceneError> {
     let sheet = generate::isotropic_square(3, 0.2)?;
@@ -26,6 +26,27 @@ fn paper(p: &[f64], size: u32) -> Result<Scene, SceneError> {
         .clamped(&[VertexId(0)])
         .build()?
         .with_acceleration([0.0, 0.0, -p[0]]);
+    Ok(Scene::new(
+        model,
+        State::at_rest(sheet.positions().to_vec()),
+    ))
+}
+
+/// Gravity, and the rigidities of patches, each of as many faces in their order.
+fn patches(p: &[f64], size: u32) -> Result<Scene, SceneError> {
+    let sheet = generate::isotropic_square(size, 0.3)?;
+    let faces: Vec<FaceId> = sheet.topology().face_ids().collect();
+    let own = faces.chunks(faces.len().div_ceil(p.len() - 1));
+    let of = |rigidity: f64| {
+        let mut material = Material::office_paper();
+        material.rigidity = rigidity;
+        material
+    };
+    let mut builder = SheetModel::of_material(&sheet, &of(p[1])).clamped(&[VertexId(0)]);
+    for (own, rigidity) in own.zip(&p[1..]) {
+        builder = builder.with_patch(own.to_vec(), &of(*rigidity));
+    }
+    let model = builder.build()?.with_acceleration([0.0, 0.0, -p[0]]);
     Ok(Scene::new(
         model,
         State::at_rest(sheet.positions().to_vec()),
@@ -91,9 +112,11 @@ fn main() -> Result<(), SceneError> {
     measure("rods", &rods, &[9.8], 60)?;
     measure("paper", &|p: &[f64]| paper(p, 3), &[9.8, 5e-4], 60)?;
     measure("paper", &|p: &[f64]| paper(p, 4), &[9.8, 5e-4], 60)?;
-    // (What a number does makes no difference to what its derivative costs.)
-    let many = [&[9.8, 5e-4][..], &[1.0; 28]].concat();
-    measure("paper", &|p: &[f64]| paper(p, 3), &many, 60)?;
+    let of_patches = (0..29).map(|k| 5e-4 * (1.0 + 1e-2 * f64::from(k)));
+    let many: Vec<f64> = [9.8].into_iter().chain(of_patches).collect();
+    for count in [60, 240] {
+        measure("patches", &|p: &[f64]| patches(p, 3), &many, count)?;
+    }
     measure("drape", &drape, &[9.8, 5e-4], 60)?;
     Ok(())
 }

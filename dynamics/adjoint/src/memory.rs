@@ -1,8 +1,7 @@
 //! What potentials remember, on the way back.
 
-use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::{At, Memories, Reached};
-use isosheet_materials::vectors::dot;
+use isosheet_materials::{Difference, NoDerivative};
 use isosheet_model::{SheetModel, State};
 
 fn reached(state: &State) -> Reached<'_> {
@@ -58,24 +57,26 @@ pub(crate) fn choices(model: &SheetModel, state: &State, found: &Memories) -> Ve
 }
 
 /// The sum of the products of `of` with what the potentials of a model remember at the end of a step, where
-/// they choose as others did, but for those that are the same in models that are compared.
+/// they choose as others did: of the parts that differ in models that are compared.
 pub(crate) fn settled_products(
     model: &SheetModel,
     state: &State,
     (found, choices): (&Memories, &[Vec<f64>]),
     of: &[Vec<f64>],
-    same: &[bool],
+    differences: &[Difference],
 ) -> f64 {
     let mut sum = 0.0;
     let all = model.potentials().zip(found.lists()).zip(choices).zip(of);
-    for ((((potential, found), choices), of), is_same) in all.zip(same) {
-        if *is_same || of.iter().all(|o| *o == 0.0) {
-            continue;
-        }
-        if let Some(remembering) = potential.remembering() {
-            let mut memory = found.clone();
-            remembering.settle_by(choices, reached(state), &mut memory);
-            sum += dot(of, &memory);
+    for ((((potential, found), choices), of), difference) in all.zip(differences) {
+        let parts = match difference {
+            Difference::Nothing => continue,
+            Difference::Parts(parts) => Some(&parts[..]),
+            Difference::Everything => None,
+        };
+        if let Some(remembering) = potential.remembering()
+            && of.iter().any(|o| *o != 0.0)
+        {
+            sum += remembering.settled_product(parts, reached(state), (found, choices), of);
         }
     }
     sum

@@ -1,6 +1,7 @@
 //! Runs beside a run: the same scene with another value of a number.
 
 use isosheet_dynamics::Simulation;
+use isosheet_materials::{Difference, Potential};
 
 /// The simulations with another value of a number.
 pub(crate) struct Neighbours {
@@ -9,10 +10,10 @@ pub(crate) struct Neighbours {
     pub(crate) simulations: [Simulation; 2],
     /// Between the two values.
     pub(crate) distance: f64,
-    /// Of each potential of the two whether it is the same in both.
-    pub(crate) same: Vec<bool>,
-    /// Of each one whether it remembers the same in both.
-    pub(crate) remembers_the_same: Vec<bool>,
+    /// Which parts of each potential of the two differ.
+    pub(crate) differences: Vec<Difference>,
+    /// Which parts of each one may remember something else.
+    pub(crate) of_memories: Vec<Difference>,
 }
 
 impl Neighbours {
@@ -20,18 +21,16 @@ impl Neighbours {
     pub(crate) fn new(number: usize, simulations: [Simulation; 2], distance: f64) -> Self {
         let [up, down] = simulations.each_ref().map(Simulation::model);
         let pairs = || up.potentials().zip(down.potentials());
-        let same: Vec<bool> = pairs().map(|(a, b)| a.is_same(b)).collect();
-        let remembers = pairs().zip(&same).map(|((a, b), same)| {
-            let own = a.remembering();
-            *same && own.is_none_or(|own| own.remembers_the_same(b))
-        });
-        let remembers_the_same = remembers.collect();
+        let of_memory = |(a, b): (&dyn Potential, &dyn Potential)| match a.remembering() {
+            Some(own) => own.memory_difference(b),
+            None => Difference::Nothing,
+        };
         Self {
             number,
+            differences: pairs().map(|(a, b)| a.difference(b)).collect(),
+            of_memories: pairs().map(of_memory).collect(),
             simulations,
             distance,
-            same,
-            remembers_the_same,
         }
     }
 }

@@ -14,9 +14,9 @@ use crate::rows::Rows;
 use crate::system::{Request, Solution, solve};
 use isosheet_dynamics::Simulation;
 use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, OfState, ReachedPairs, StepKind};
-use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Memories;
 use isosheet_materials::vectors::dot;
+use isosheet_materials::{Difference, NoDerivative};
 use isosheet_model::{PINNED, SheetModel, State};
 use std::sync::Arc;
 
@@ -172,12 +172,13 @@ impl<'o> Sweep<'o> {
             if *weight == 0.0 {
                 continue;
             }
+            let is_other = |n: &&Neighbours| n.differences[k] != Difference::Nothing;
             let mut slope = vec![0.0; x.len()];
             potential.add_gradient(at, &mut slope);
             for (own, s) in self.end.x.iter_mut().zip(&slope) {
                 *own += weight * s;
             }
-            for neighbours in self.neighbours.iter().filter(|n| !n.same[k]) {
+            for neighbours in self.neighbours.iter().filter(is_other) {
                 let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                     let mut potentials = simulation.model().potentials();
                     potentials.nth(k).map_or(0.0, |p| p.energy(at))
@@ -259,9 +260,9 @@ impl<'o> Sweep<'o> {
         for neighbours in self.neighbours.iter().filter(|_| has_any) {
             let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
                 let model = simulation.model();
-                let same = &neighbours.remembers_the_same;
                 let found = (&step.memories, &choices[..]);
-                settled_products(model, &step.end, found, &self.memory, same)
+                let differences = &neighbours.of_memories;
+                settled_products(model, &step.end, found, &self.memory, differences)
             });
             self.of_numbers[neighbours.number] += (up - down) / neighbours.distance;
         }
@@ -383,7 +384,10 @@ impl<'o> Sweep<'o> {
                 simulation.model().place_pins(t, &mut x);
                 x
             });
-            let same: &[bool] = if up == down { &neighbours.same } else { &[] };
+            let differences: &[Difference] = match up == down {
+                true => &neighbours.differences,
+                false => &[],
+            };
             for (end, simulation) in ends.iter_mut().zip(&mut neighbours.simulations) {
                 let model = Arc::clone(simulation.model());
                 let placed = |x: &[f64]| {
@@ -406,7 +410,7 @@ impl<'o> Sweep<'o> {
                 let begun = equations.begin_like(step, lag, &x, pairs);
                 begun.map_err(|source| AdjointError::Equations { t, source })?;
                 let mut residual = vec![0.0; x.len()];
-                equations.residual_without(same, step, &x, &mut residual);
+                equations.residual_of(differences, step, &x, &mut residual);
                 *end = dot(w, &residual);
                 if !multipliers.is_empty() {
                     let values = Rows::values(&model, step, &x);

@@ -24,7 +24,8 @@ mod tests;
 
 use crate::derivative::NoDerivative;
 use crate::limit_error::LimitError;
-use crate::potential::{At, Limited, Reached, Remembering, Settled};
+use crate::potential::{At, Difference, Limited, Reached, Remembering, Settled};
+use crate::vectors::dot;
 use crate::{HessianSink, Potential};
 use isosheet_motion::Profile;
 
@@ -469,9 +470,23 @@ impl Potential for ElasticSheet {
         unstrained + 2.0 * (energy * unstrained).sqrt()
     }
 
-    fn is_same(&self, other: &dyn Potential) -> bool {
+    /// By faces.
+    fn difference(&self, other: &dyn Potential) -> Difference {
         let other: Option<&Self> = (other as &dyn Any).downcast_ref();
-        other.is_some_and(|other| self.faces == other.faces)
+        match other.filter(|other| self.faces.len() == other.faces.len()) {
+            Some(other) => {
+                Difference::of_parts(self.faces.len(), |k| self.faces[k] != other.faces[k])
+            }
+            None => Difference::Everything,
+        }
+    }
+
+    fn add_gradient_of(&self, parts: &[u32], at: At<'_>, gradient: &mut [f64]) {
+        let barrier = barrier_of(at.memory);
+        for k in parts {
+            let (face, strained) = strained(&self.faces, *k as usize, at);
+            face.add_gradient(&strained, barrier, gradient);
+        }
     }
 
     fn limit(&self) -> Option<&dyn Limited> {
@@ -576,16 +591,60 @@ impl Remembering for ElasticSheet {
         }
     }
 
-    fn remembers_the_same(&self, other: &dyn Potential) -> bool {
+    /// By faces: those with a face around them that is another one, or bends otherwise.
+    fn memory_difference(&self, other: &dyn Potential) -> Difference {
         let other: Option<&Self> = (other as &dyn Any).downcast_ref();
-        other.is_some_and(|other| {
-            let arcs = self.arcs.iter().zip(&other.arcs);
+        let comparable = other.filter(|other| {
             self.mass == other.mass
                 && self.acceleration == other.acceleration
                 && self.vertices == other.vertices
+                && self.area() == other.area()
+                && self.faces.len() == other.faces.len()
                 && self.arcs.len() == other.arcs.len()
-                && arcs.into_iter().all(|(own, other)| own.are_same(other))
-        })
+        });
+        let Some(other) = comparable else {
+            return Difference::Everything;
+        };
+        let mut differs = vec![false; self.faces.len()];
+        for (own, others) in self.arcs.iter().zip(&other.arcs) {
+            if !own.add_difference(others, (&self.faces, &other.faces), &mut differs) {
+                return Difference::Everything;
+            }
+        }
+        Difference::of_parts(differs.len(), |k| differs[k])
+    }
+
+    fn settled_product(
+        &self,
+        parts: Option<&[u32]>,
+        state: Reached<'_>,
+        (found, choices): (&[f64], &[f64]),
+        of: &[f64],
+    ) -> f64 {
+        let mut memory = found.to_vec();
+        let Some(parts) = parts else {
+            self.settle_by(choices, state, &mut memory);
+            return dot(of, &memory);
+        };
+        let here = At::new(state.t, state.x);
+        let [_, bends @ ..] = &mut memory[..] else {
+            return 0.0;
+        };
+        let of = of[1..].as_chunks::<NUMBERS>().0;
+        let mut sum = 0.0;
+        let mut choices = choices;
+        for arcs in &self.arcs {
+            let (own, others) = choices.split_at(arcs.face_count().min(choices.len()));
+            choices = others;
+            let slack = |k: usize, face: &Face, bend, wanted| {
+                let part = own.get(k).copied().unwrap_or(0.0);
+                face.with_part(here, bend, wanted, part)
+            };
+            arcs.remember_parts_by(&self.faces, here, bends, parts, slack, |k, bend| {
+                sum += dot(&of[k], &bend.numbers());
+            });
+        }
+        sum
     }
 
     fn add_memory_products(

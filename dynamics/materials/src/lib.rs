@@ -55,7 +55,7 @@ pub use plate_bending::{
     PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
 pub use potential::{
-    At, CouplingKind, Force, Gravity, HessianKind, Limited, MaterialReport, Memories,
+    At, CouplingKind, Difference, Force, Gravity, HessianKind, Limited, MaterialReport, Memories,
     PAPER_GRAVITY, Potential, PotentialShape, Reached, Remembering, Settled,
 };
 pub use stiffening::Stiffening;

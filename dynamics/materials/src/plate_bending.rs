@@ -24,7 +24,10 @@ mod tests;
 
 use super::patched::Patched;
 use super::plasticity::Yield;
-use crate::potential::{At, HessianKind, MaterialReport, Reached, Remembering, Settled};
+use crate::potential::{
+    At, Difference, HessianKind, MaterialReport, Reached, Remembering, Settled,
+};
+use crate::vectors::add;
 use crate::{HessianSink, Potential};
 pub use error::{CurlError, PlateBendingError};
 pub use face_curvature::FaceCurvature;
@@ -39,7 +42,6 @@ pub use natural::{Curl, Curvature, NaturalTensor};
 use points::{FlatPoints, add_forces};
 pub(crate) use second_derivatives::SecondDerivatives;
 use std::any::Any;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencil::{Stencil, Stencils, face_of};
 pub use stiffness::PlateStiffness;
@@ -216,26 +218,33 @@ impl PlateBending {
 
     fn of_stencils(sheet: &Sheet, roots: Roots, stencils: Arc<Stencils>) -> Self {
         let mut at_vertices = vec![0.0; sheet.topology().vertex_count()];
-        let mut others = BTreeMap::<[u32; 2], f64>::new();
+        // Of each vertex the others with a higher number that it has a product with.
+        let mut others: Vec<Vec<(u32, f64)>> = vec![Vec::new(); at_vertices.len()];
         for stencil in stencils.iter() {
             for (i, (v, a)) in stencil.clone().enumerate() {
                 for (w, b) in stencil.clone().take(i + 1) {
                     let product = a.dot(&b);
                     if v == w {
                         at_vertices[v] += product;
-                    } else {
-                        let pair = [v.min(w) as u32, v.max(w) as u32];
-                        *others.entry(pair).or_default() += product;
+                        continue;
+                    }
+                    let (own, higher) = (&mut others[v.min(w)], v.max(w) as u32);
+                    match own.iter_mut().find(|(other, _)| *other == higher) {
+                        Some((_, sum)) => *sum += product,
+                        None => own.push((higher, product)),
                     }
                 }
             }
         }
         let (mut at_edges, mut at_pairs) = (Vec::new(), Vec::new());
-        for (pair, value) in others {
-            let pair = pair.map(VertexId);
-            match sheet.topology().find_edge(pair[0], pair[1]) {
-                Some(edge) => at_edges.push((edge, value)),
-                None => at_pairs.push((pair, value)),
+        for (v, mut others) in others.into_iter().enumerate() {
+            others.sort_unstable_by_key(|(other, _)| *other);
+            for (other, value) in others {
+                let pair = [VertexId::from_index(v), VertexId(other)];
+                match sheet.topology().find_edge(pair[0], pair[1]) {
+                    Some(edge) => at_edges.push((edge, value)),
+                    None => at_pairs.push((pair, value)),
+                }
             }
         }
         Self {
@@ -433,14 +442,48 @@ impl Potential for PlateBending {
         }
     }
 
-    /// Of plates that are flat without stress, and held by no clamps along lines.
-    fn is_same(&self, other: &dyn Potential) -> bool {
+    /// By points, of plates that do not yield and that no clamps along lines hold.
+    fn difference(&self, other: &dyn Potential) -> Difference {
         let other: Option<&Self> = (other as &dyn Any).downcast_ref();
-        other.is_some_and(|other| {
-            self.stress_free.is_none()
-                && other.stress_free.is_none()
-                && self.stencils.are_same(&other.stencils)
+        let comparable = other.filter(|other| self.stencils.are_comparable(&other.stencils));
+        let Some(other) = comparable else {
+            return Difference::Everything;
+        };
+        let is_curved_alike: Box<dyn Fn(usize) -> bool> =
+            match (&self.stress_free, &other.stress_free) {
+                (None, None) => Box::new(|_| true),
+                (Some(own), Some(other)) if own.are_comparable(other) => {
+                    Box::new(|point| own.is_same(other, point))
+                }
+                _ => return Difference::Everything,
+            };
+        Difference::of_parts(self.stencils.count(), |point| {
+            !(self.stencils.is_same(&other.stencils, point) && is_curved_alike(point))
         })
+    }
+
+    fn add_gradient_of(&self, parts: &[u32], at: At<'_>, gradient: &mut [f64]) {
+        let stencils = &self.stencils;
+        let mut add_second = |stencil: Stencil<'_>, second: &Matrix3<f64>| {
+            for (v, weights) in stencil {
+                add(gradient, VertexId::from_index(v), &(second * weights));
+            }
+        };
+        let mut turning = Vec::new();
+        for point in parts.iter().map(|point| *point as usize) {
+            let stencil = stencils.of(point);
+            match &self.stress_free {
+                None => add_second(stencil.clone(), &stencil.apply(at)),
+                Some(curvature) => {
+                    let bent = curvature.bent(point, &stencil, at);
+                    add_second(stencil, &bent.elastic);
+                    turning.extend(bent.turning_forces());
+                }
+            }
+        }
+        for (v, force) in turning {
+            add(gradient, v, &force);
+        }
     }
 
     fn hessian_kind(&self) -> HessianKind {
@@ -484,8 +527,12 @@ impl Remembering for PlateBending {
             .is_some_and(StressFreeCurvature::yields)
     }
 
-    fn remembers_the_same(&self, _other: &dyn Potential) -> bool {
-        self.stress_free.is_none()
+    fn memory_difference(&self, other: &dyn Potential) -> Difference {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        match other.is_some_and(|other| !self.can_yield() && !other.can_yield()) {
+            true => Difference::Nothing,
+            false => Difference::Everything,
+        }
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {

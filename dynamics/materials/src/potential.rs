@@ -3,6 +3,7 @@
 use crate::derivative::NoDerivative;
 use crate::hessian::HessianSink;
 use crate::limit_error::LimitError;
+use crate::vectors::dot;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
@@ -70,11 +71,17 @@ pub trait Potential: Any + Debug + Send + Sync {
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
 
-    /// Whether another potential has the same energy at all times, positions and memories, as far as that can
-    /// be told by its numbers: whoever compares models need not evaluate it. The default cannot
-    /// tell, and says no.
-    fn is_same(&self, _other: &dyn Potential) -> bool {
-        false
+    /// Which parts of another potential have other energies than its own at some time, positions or memory, as
+    /// far as that can be told by numbers: whoever compares models evaluates these alone. The default
+    /// cannot tell, and says all.
+    fn difference(&self, _other: &dyn Potential) -> Difference {
+        Difference::Everything
+    }
+
+    /// As [`Potential::add_gradient`], of some [parts](Potential::difference) alone. The default has no
+    /// parts, and adds all.
+    fn add_gradient_of(&self, _parts: &[u32], at: At<'_>, gradient: &mut [f64]) {
+        self.add_gradient(at, gradient);
     }
 
     /// How [`Potential::add_hessian`] is to be taken by whoever needs all second derivatives. The default
@@ -192,10 +199,25 @@ pub trait Remembering {
         self.settle(state, memory);
     }
 
-    /// Whether another potential, which [is the same](Potential::is_same), makes the same memories of states,
-    /// as far as that can be told. The default cannot tell, and says no.
-    fn remembers_the_same(&self, _other: &dyn Potential) -> bool {
-        false
+    /// Which parts of another potential may make other memories of a state, as far as that can be told. The
+    /// default cannot tell, and says all.
+    fn memory_difference(&self, _other: &dyn Potential) -> Difference {
+        Difference::Everything
+    }
+
+    /// The sum of the products of `of` with the memory that [`Remembering::settle_by`] makes of the one that
+    /// was found, by its choices: of some [parts](Remembering::memory_difference) alone. The default has
+    /// no parts, and sums all.
+    fn settled_product(
+        &self,
+        _parts: Option<&[u32]>,
+        state: Reached<'_>,
+        (found, choices): (&[f64], &[f64]),
+        of: &[f64],
+    ) -> f64 {
+        let mut memory = found.to_vec();
+        self.settle_by(choices, state, &mut memory);
+        dot(of, &memory)
     }
 
     /// Adds to `of_memory` the derivatives of `w . dV/dx` by the numbers of the memory, with the vector `w`
@@ -427,9 +449,16 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).add_semidefinite_hessian(at, hessian);
     }
 
-    fn is_same(&self, other: &dyn Potential) -> bool {
+    fn difference(&self, other: &dyn Potential) -> Difference {
         let other = (other as &dyn Any).downcast_ref::<Self>();
-        other.is_some_and(|other| Self::ptr_eq(self, other))
+        match other.is_some_and(|other| Self::ptr_eq(self, other)) {
+            true => Difference::Nothing,
+            false => Difference::Everything,
+        }
+    }
+
+    fn add_gradient_of(&self, parts: &[u32], at: At<'_>, gradient: &mut [f64]) {
+        (**self).add_gradient_of(parts, at, gradient);
     }
 
     fn hessian_kind(&self) -> HessianKind {
@@ -477,6 +506,31 @@ pub enum CouplingKind {
     Soft,
     /// So stiff that conjugate gradients would not converge without them.
     Stiff,
+}
+
+/// Which parts of a potential are other ones in another potential.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Difference {
+    /// None: the potentials are the same.
+    Nothing,
+    /// Those with these numbers, in order, such as faces.
+    Parts(Vec<u32>),
+    /// All, or which ones cannot be told.
+    Everything,
+}
+
+impl Difference {
+    /// Of the parts, `count` in all, that differ.
+    pub(crate) fn of_parts(count: usize, differs: impl Fn(usize) -> bool) -> Self {
+        let parts: Vec<u32> = (0..count)
+            .filter(|k| differs(*k))
+            .map(|k| k as u32)
+            .collect();
+        match parts.is_empty() {
+            true => Self::Nothing,
+            false => Self::Parts(parts),
+        }
+    }
 }
 
 /// Whether a Hessian has all second derivatives.
@@ -544,8 +598,11 @@ impl Potential for Gravity {
         PotentialShape::Linear
     }
 
-    fn is_same(&self, other: &dyn Potential) -> bool {
-        (other as &dyn Any).downcast_ref() == Some(self)
+    fn difference(&self, other: &dyn Potential) -> Difference {
+        match (other as &dyn Any).downcast_ref() == Some(self) {
+            true => Difference::Nothing,
+            false => Difference::Everything,
+        }
     }
 }
 

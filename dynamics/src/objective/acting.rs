@@ -3,7 +3,7 @@
 use crate::{SheetModel, StepError};
 use isosheet_linalg::norm_inf;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
-use isosheet_materials::potential::{At, Limited};
+use isosheet_materials::potential::{At, Difference, Limited};
 use isosheet_mesh::VertexId;
 use isosheet_model::PINNED;
 use isosheet_model::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
@@ -33,7 +33,7 @@ pub(super) struct Acting {
     round_off: f64,
     energy_at: Evaluated,
     /// The potentials that are left out of gradients, by their numbers; nothing in steps.
-    left_out: Vec<bool>,
+    restricted: Vec<Difference>,
     /// Conservative forces where they were evaluated last, newtons; zero at pinned vertices.
     force: Vec<f64>,
     force_at: Evaluated,
@@ -85,7 +85,7 @@ impl Acting {
             energy: 0.0,
             round_off: 0.0,
             energy_at: Evaluated::new(n),
-            left_out: Vec::new(),
+            restricted: Vec::new(),
             force: vec![0.0; n],
             force_at: Evaluated::new(n),
         }
@@ -100,20 +100,24 @@ impl Acting {
         free.flat_map(|(row, _)| row).map(|f| f.abs()).sum()
     }
 
-    /// Leaves potentials of these numbers out of gradients from now on; none where there are no numbers.
-    pub(super) fn leave_out(&mut self, numbers: &[bool]) {
-        self.left_out.clear();
-        self.left_out.extend_from_slice(numbers);
+    /// Restricts gradients to parts of the potentials from now on; to none where there is no list.
+    pub(super) fn restrict(&mut self, to: &[Difference]) {
+        self.restricted.clear();
+        self.restricted.extend_from_slice(to);
         self.force_at.forget();
     }
 
-    /// Sets the conservative force of the potentials that are not left out.
-    fn set_rest_of_force(&mut self, at: Iterate<'_>) {
+    /// Sets the conservative force of the parts of the potentials that it is restricted to.
+    fn set_restricted_force(&mut self, at: Iterate<'_>) {
         self.force.fill(0.0);
         let potentials = self.model.potentials_at(at.t, at.x, at.memories);
-        for ((potential, place), is_out) in potentials.zip(&self.left_out) {
-            if !is_out {
-                potential.add_gradient(place, &mut self.force);
+        for ((potential, place), parts) in potentials.zip(&self.restricted) {
+            match parts {
+                Difference::Nothing => {}
+                Difference::Parts(parts) => {
+                    potential.add_gradient_of(parts, place, &mut self.force);
+                }
+                Difference::Everything => potential.add_gradient(place, &mut self.force),
             }
         }
         self.force.iter_mut().for_each(|f| *f = -*f);
@@ -236,11 +240,11 @@ impl Term for Acting {
 
     fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
         if self.force_at.moves_to(at) {
-            match self.left_out.is_empty() {
+            match self.restricted.is_empty() {
                 true => self
                     .model
                     .force_with(at.memories, at.t, at.x, &mut self.force),
-                false => self.set_rest_of_force(at),
+                false => self.set_restricted_force(at),
             }
         }
         let acting = self.force.iter().zip(&self.applied);

@@ -13,7 +13,7 @@ use inertia::Inertia;
 use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::both;
 use isosheet_materials::hessian::{BlockSink, HessianProduct};
-use isosheet_materials::potential::At;
+use isosheet_materials::potential::{At, Difference};
 use isosheet_model::PINNED;
 use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use std::any::Any;
@@ -191,9 +191,9 @@ impl Objective {
         }
     }
 
-    /// Leaves potentials out of gradients from now on, by their numbers.
-    pub(crate) fn leave_out(&mut self, numbers: &[bool]) {
-        self.acting.leave_out(numbers);
+    /// Restricts gradients to parts of the potentials from now on; to none where there is no list.
+    pub(crate) fn restrict(&mut self, to: &[Difference]) {
+        self.acting.restrict(to);
     }
 
     /// All terms but the inertia and contact.

@@ -11,7 +11,7 @@ use isosheet_materials::hessian::{
     BlockSink, CouplingSink, HessianPart, HessianProduct, HessianSink,
 };
 use isosheet_materials::vectors::diameter;
-use isosheet_materials::{At, HessianKind, NoDerivative, Potential};
+use isosheet_materials::{At, Difference, HessianKind, NoDerivative, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
 use isosheet_model::term::{Formula, Iterate, StartProducts, StepStart};
 use nalgebra::{Matrix3, Vector3};
@@ -135,18 +135,18 @@ impl<'a> StepEquations<'a> {
         Ok(())
     }
 
-    /// As [`StepEquations::residual`], without some of the potentials, by their numbers: those that are the
-    /// same in models that are compared.
-    pub fn residual_without(
+    /// As [`StepEquations::residual`], of some parts of the potentials alone, one entry for each; of all where
+    /// there is no list. Models that are compared differ by these.
+    pub fn residual_of(
         &mut self,
-        potentials: &[bool],
+        parts: &[Difference],
         step: &AcceptedStep,
         x: &[f64],
         out: &mut [f64],
     ) {
-        self.objective.leave_out(potentials);
+        self.objective.restrict(parts);
         self.residual(step, x, out);
-        self.objective.leave_out(&[]);
+        self.objective.restrict(&[]);
     }
 
     /// Sets the residual (`3V`, kilogram metres) at positions `x`, at pinned

@@ -7,7 +7,7 @@ use isosheet_dynamics::{
     Method, NaturalTensor, PlateBending, PlateStiffness, Profile, SheetModel, State, VertexLoad,
     Wind,
 };
-use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use isosheet_mesh::{FaceId, MassKind, Sheet, VertexId, generate};
 
 /// A sheet that is curved in two directions, so that no rod depends on others.
 fn shell() -> Result<Sheet, SceneError> {
@@ -231,6 +231,49 @@ fn folded_and_curled() {
     let plan = Plan::steps(bdf2(), 1e-2, 10);
     let loss = coordinate(8, 2, 10);
     checked("folded", &family, &[0.8, 2e-3, 1.5], &plan, &loss, 1e-6);
+}
+
+/// Patches of other materials: the rigidity of one, the stiffness of another one, the curl of a third one.
+#[test]
+fn patches() {
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let sheet = generate::anisotropic_grid(12, 4, 0.18, 0.06)?;
+        let clamp = sheet.vertices_where(|[x, _, _]| x < 0.016);
+        let t = sheet.topology();
+        let beyond = |face: &FaceId, x: f64| {
+            let corners = t.faces()[face.index()];
+            corners.iter().all(|v| sheet.position(*v)[0] > x - 1e-9)
+        };
+        let of = |stiffness: f64, rigidity: f64| {
+            let mut own = film();
+            (own.stiffness, own.rigidity) = (stiffness, rigidity);
+            own
+        };
+        let from = |x: f64| {
+            t.face_ids()
+                .filter(|f| beyond(f, x))
+                .collect::<Vec<FaceId>>()
+        };
+        let curl = |face: FaceId| Curvature {
+            along: if beyond(&face, 0.135) { p[2] } else { 1.0 },
+            ..Curvature::default()
+        };
+        let model = SheetModel::of_material(&sheet, &film())
+            .clamped(&clamp)
+            .with_patch(from(0.045), &of(p[1], 3e-4))
+            .with_patch(from(0.09), &of(300.0, p[0]))
+            .curled(Curl {
+                direction: MaterialDirection::Uniform([1.0, 0.2, 0.0]),
+                curvature: NaturalTensor::Faces(t.face_ids().map(curl).collect()),
+                profile: 1.0.into(),
+            })
+            .build()?
+            .with_gravity();
+        Ok(as_meshed(model, &sheet))
+    };
+    let plan = Plan::steps(bdf2(), 1e-2, 8);
+    let loss = coordinate(12, 2, 8);
+    checked("patches", &family, &[4e-4, 400.0, 2.0], &plan, &loss, 1e-6);
 }
 
 /// The rest shape: coordinates of the mesh move with the start.

@@ -11,7 +11,7 @@ use crate::plate_bending::PlateBending;
 use crate::plate_bending::SecondDerivatives;
 use crate::potential::At;
 use isosheet_mesh::{Part, Sheet};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
 /// The bends of the faces of a sheet, or of one of the parts of a union.
@@ -57,12 +57,33 @@ impl Arcs {
         }
     }
 
-    /// Whether those of faces that are the same remember the same, as far as that can be told.
-    pub(super) fn are_same(&self, other: &Self) -> bool {
-        self.curvatures.are_same(&other.curvatures)
-            && self.at_rest == other.at_rest
-            && self.coordinates == other.coordinates
-            && self.faces == other.faces
+    /// Marks the faces whose memories of a state may be others by others arcs, with other elastic faces; false
+    /// where these are not of the same faces.
+    pub(super) fn add_difference(
+        &self,
+        other: &Self,
+        (faces, others): (&[Face], &[Face]),
+        differs: &mut [bool],
+    ) -> bool {
+        if self.coordinates != other.coordinates
+            || self.faces != other.faces
+            || self.at_rest.len() != other.at_rest.len()
+            || !self.curvatures.are_comparable(&other.curvatures)
+        {
+            return false;
+        }
+        let (own, others) = (&faces[self.faces.clone()], &others[self.faces.clone()]);
+        let is_other = |k: usize| {
+            own[k] != others[k]
+                || self.at_rest.get(k) != other.at_rest.get(k)
+                || !self.curvatures.is_same(&other.curvatures, k)
+        };
+        let is_other: Vec<bool> = (0..own.len()).map(is_other).collect();
+        let differs = &mut differs[self.faces.clone()];
+        for (around, differs) in self.around.iter().zip(differs) {
+            *differs |= around.iter().any(|f| is_other[f.face]);
+        }
+        true
     }
 
     /// Its faces that are curved without stress.
@@ -139,6 +160,53 @@ impl Arcs {
         });
     }
 
+    /// As [`Arcs::remember_by`], of some faces alone: the bends that they are to remember go to `take`, with
+    /// the numbers of the faces among the elastic ones. `slack` has the number of the face among its own
+    /// first.
+    pub(super) fn remember_parts_by(
+        &self,
+        faces: &[Face],
+        here: At<'_>,
+        memory: &mut [f64],
+        parts: &[u32],
+        mut slack: impl FnMut(usize, &Face, Bend, f64) -> Bend,
+        mut take: impl FnMut(usize, Bend),
+    ) {
+        let own = &faces[self.faces.clone()];
+        let rows = &*self.rows(memory);
+        let mut known: Vec<Option<(Bend, [Vector3<f64>; 2])>> = vec![None; own.len()];
+        let first = self.faces.start;
+        let own_parts = parts.iter().map(|k| *k as usize);
+        for k in own_parts
+            .filter(|k| self.faces.contains(k))
+            .map(|k| k - first)
+        {
+            let around = self.around.of(k);
+            for f in around.iter().map(|f| f.face) {
+                known[f].get_or_insert_with(|| {
+                    let before = [Bend::remembered(&rows[f]), Bend::FLAT];
+                    let stresses = before.map(|bend| own[f].stress(here, &bend));
+                    (self.bend(faces, here, f), stresses)
+                });
+            }
+            let of = |f: usize| known[f].as_ref().expect("it has been made");
+            let most = around
+                .iter()
+                .fold(0.0, |most: f64, f| most.max(of(f.face).0.own));
+            let mean = |which: usize| largest_of_mean(around, |f| (own[f].area(), of(f).1[which]));
+            let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
+            let Bend {
+                squared, credit, ..
+            } = Bend::remembered(&rows[k]);
+            let bend = Bend {
+                squared,
+                credit,
+                ..of(k).0
+            };
+            take(first + k, slack(k, &own[k], bend, wanted));
+        }
+    }
+
     fn rows<'a>(&self, memory: &'a mut [f64]) -> &'a mut [[f64; NUMBERS]] {
         &mut memory.as_chunks_mut().0[self.faces.clone()]
     }
@@ -148,13 +216,22 @@ impl Arcs {
         let own = &faces[self.faces.clone()];
         let at = At::new(here.t, &here.x[self.coordinates.clone()]);
         let bends = bends(&self.curvatures, own, at).enumerate();
-        bends.map(|(k, mut bend)| {
-            if let Some(rest) = self.at_rest.get(k) {
-                bend.chords -= rest.chords;
-                bend.own = (bend.own - rest.own).abs();
-            }
-            bend
-        })
+        bends.map(|(k, bend)| self.beyond_rest(k, bend))
+    }
+
+    /// That of one of its faces.
+    fn bend(&self, faces: &[Face], here: At<'_>, k: usize) -> Bend {
+        let at = At::new(here.t, &here.x[self.coordinates.clone()]);
+        let face = &faces[self.faces.start + k];
+        self.beyond_rest(k, bend(face, &self.curvatures.of_face(k, at)))
+    }
+
+    fn beyond_rest(&self, k: usize, mut bend: Bend) -> Bend {
+        if let Some(rest) = self.at_rest.get(k) {
+            bend.chords -= rest.chords;
+            bend.own = (bend.own - rest.own).abs();
+        }
+        bend
     }
 }
 
@@ -164,10 +241,16 @@ fn bends<'a>(
     faces: &'a [Face],
     at: At<'a>,
 ) -> impl Iterator<Item = Bend> + 'a {
-    faces.iter().zip(curvatures.at(at)).map(|(face, h)| Bend {
-        chords: face.chords(&h),
-        own: h.norm_squared() * face.mean_squared_length(),
+    let all = faces.iter().zip(curvatures.at(at));
+    all.map(|(face, second)| bend(face, &second))
+}
+
+/// The bend of a face with the second derivatives of positions.
+fn bend(face: &Face, second: &Matrix3<f64>) -> Bend {
+    Bend {
+        chords: face.chords(second),
+        own: second.norm_squared() * face.mean_squared_length(),
         squared: 0.0,
         credit: 0.0,
-    })
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::bend::NUMBERS;
 use super::*;
+use crate::{Curl, Curvature, PlateEdges};
 use isosheet_mesh::generate;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -157,5 +158,92 @@ fn the_energy_has_its_derivatives_by_what_is_remembered() {
             assert!(error <= bound, "by {own}: {slope:e} {expected:e}");
         }
         assert!(of[1..].iter().any(|o| *o != 0.0));
+    }
+}
+
+/// Sheets that differ in a patch: their gradients and memories differ by those of their parts.
+#[test]
+fn differing_parts_have_the_whole_difference() {
+    let corners = [[0.0, 0.0], [0.2, 0.0], [0.2, 0.1], [0.0, 0.1]];
+    let sheet = generate::delaunay(&corners, 0.02, 3).expect("a rectangle");
+    let beyond = |face: &FaceId| {
+        let corners = sheet.topology().faces()[face.index()];
+        corners.iter().all(|v| sheet.position(*v)[0] > 0.14)
+    };
+    let patch: Vec<FaceId> = sheet.topology().face_ids().filter(beyond).collect();
+    let curl = Curl {
+        direction: crate::MaterialDirection::Uniform([1.0, 0.3, 0.0]),
+        curvature: Curvature {
+            along: 2.0,
+            ..Curvature::default()
+        }
+        .into(),
+        profile: 1.0.into(),
+    };
+    let (_, _, mut random) = scene(0);
+    let n = sheet.positions().len();
+    let place = |bend: f64, random: &mut dyn FnMut() -> f64| -> Vec<f64> {
+        let points = sheet.positions().as_chunks::<3>().0.iter();
+        points
+            .flat_map(|[x, y, _]| [*x, *y, bend * (x * x - 0.4 * x * y) + 2e-5 * random()])
+            .collect()
+    };
+    let [first, second] = [0.3, 0.5].map(|bend| place(bend, &mut random));
+    for is_curled in [false, true] {
+        let make = |rigidity: f64| {
+            let laws = Patched::everywhere(5e-4.into()).with_patch(patch.clone(), rigidity.into());
+            let edges = PlateEdges {
+                pinned: &[],
+                creases: &[],
+                clamps: &[],
+            };
+            let mut plate = PlateBending::patched(&sheet, &laws, &edges).expect("a plate");
+            if is_curled {
+                plate = plate.with_curl(&sheet, curl.clone()).expect("a curl");
+            }
+            let elastic = ElasticSheet::new(&sheet, 3e3, 0.3).expect("elastic");
+            (elastic.beside(&sheet, &plate), plate)
+        };
+        let [up, down] = [6e-4, 6.1e-4].map(make);
+        let v = vec![0.0; n];
+        let mut memory = up.0.memory();
+        up.0.start(at(&first, &v), &mut memory);
+        let choices = up.0.choices(at(&second, &v), &memory);
+        let of: Vec<f64> = memory.iter().map(|_| random()).collect();
+        let here = At::new(0.0, &second).with_memory(&memory);
+        let potentials: [[&dyn Potential; 2]; 2] = [[&up.0, &down.0], [&up.1, &down.1]];
+        for (pair, here) in potentials.into_iter().zip([here, At::new(0.0, &second)]) {
+            let Difference::Parts(parts) = pair[0].difference(pair[1]) else {
+                panic!("{pair:?} differ in some parts");
+            };
+            let [whole, of_parts] = [false, true].map(|is_part| {
+                let [a, b] = pair.map(|potential| {
+                    let mut gradient = vec![0.0; n];
+                    match is_part {
+                        true => potential.add_gradient_of(&parts, here, &mut gradient),
+                        false => potential.add_gradient(here, &mut gradient),
+                    }
+                    gradient
+                });
+                a.iter().zip(&b).map(|(a, b)| a - b).collect::<Vec<f64>>()
+            });
+            let size = whole.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
+            for (a, b) in whole.iter().zip(&of_parts) {
+                assert!((a - b).abs() <= 1e-9 * size, "{a:e} {b:e}");
+            }
+        }
+        let Difference::Parts(parts) = up.0.memory_difference(&down.0) else {
+            panic!("some faces remember something else");
+        };
+        assert!(parts.len() < up.0.face_count());
+        // (Of the barrier's stiffness, too, which is the same.)
+        let [whole, of_parts] = [None, Some(&parts[..])].map(|parts| {
+            let products = [&up.0, &down.0].map(|elastic| {
+                elastic.settled_product(parts, at(&second, &v), (&memory, &choices), &of)
+            });
+            products[0] - products[1]
+        });
+        let error = (whole - of_parts).abs();
+        assert!(error <= 1e-6 * whole.abs(), "{whole:e} {of_parts:e}");
     }
 }

@@ -38,6 +38,11 @@ impl Surroundings {
         let ranges = self.starts.windows(2);
         ranges.map(|range| &self.around[range[0]..range[1]])
     }
+
+    /// The faces around one.
+    pub(super) fn of(&self, face: usize) -> &[Neighbour] {
+        &self.around[self.starts[face]..self.starts[face + 1]]
+    }
 }
 
 /// The faces around a face, unfolded across their edges into its plane.

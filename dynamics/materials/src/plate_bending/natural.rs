@@ -88,6 +88,16 @@ impl NaturalCurvature {
         Self { points, profile }
     }
 
+    /// The factor of time, unless that is always one.
+    pub(super) fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref()
+    }
+
+    /// `R k_0` of a point, 1/m.
+    pub(super) fn own(&self, point: usize) -> &Vector3<f64> {
+        &self.points[point]
+    }
+
     /// Of curvatures `R k` of the points at a time when the profile is one, 1/m.
     ///
     /// # Errors

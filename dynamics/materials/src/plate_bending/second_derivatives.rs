@@ -30,9 +30,23 @@ impl SecondDerivatives {
         }
     }
 
-    /// Whether others are the same at all positions, as far as that can be told.
-    pub(crate) fn are_same(&self, other: &Self) -> bool {
-        self.inverses == other.inverses && self.stencils.are_same(&other.stencils)
+    /// Whether others are those of as many faces, and neither has clamps along lines.
+    pub(crate) fn are_comparable(&self, other: &Self) -> bool {
+        self.stencils.are_comparable(&other.stencils)
+    }
+
+    /// Whether those of a face are the same as others at all positions, where they are comparable.
+    pub(crate) fn is_same(&self, other: &Self, face: usize) -> bool {
+        let mut points = POINTS * face..POINTS * (face + 1);
+        self.inverses[face] == other.inverses[face]
+            && points.all(|point| self.stencils.is_same(&other.stencils, point))
+    }
+
+    /// Of a face at a time and positions, as [`SecondDerivatives::at`].
+    pub(crate) fn of_face(&self, face: usize, at: At<'_>) -> Matrix3<f64> {
+        let points = POINTS * face..POINTS * (face + 1);
+        let sum: Matrix3<f64> = points.map(|point| self.stencils.of(point).apply(at)).sum();
+        sum * self.inverses[face]
     }
 
     /// Of each face at a time and positions: a row for each component of the positions, with the components

@@ -210,13 +210,15 @@ impl Stencils {
         (0..self.count()).map(|point| self.of(point))
     }
 
-    /// Whether others have the same entries, and neither has clamps along lines.
-    pub(super) fn are_same(&self, other: &Self) -> bool {
-        self.clamps.is_empty()
-            && other.clamps.is_empty()
-            && self.starts == other.starts
-            && self.vertices == other.vertices
-            && self.weights == other.weights
+    /// Whether others are of as many points, and neither has clamps along lines.
+    pub(super) fn are_comparable(&self, other: &Self) -> bool {
+        self.clamps.is_empty() && other.clamps.is_empty() && self.count() == other.count()
+    }
+
+    /// Whether a point has the same entries as that of others, which are comparable.
+    pub(super) fn is_same(&self, other: &Self, point: usize) -> bool {
+        let [own, other] = [self, other].map(|stencils| stencils.of(point));
+        own.vertices == other.vertices && own.weights == other.weights
     }
 
     /// Number of points.

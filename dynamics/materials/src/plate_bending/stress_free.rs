@@ -273,6 +273,23 @@ impl StressFreeCurvature {
         }
     }
 
+    /// Whether neither yields, and the natural curvatures have the same factor of time.
+    pub(super) fn are_comparable(&self, other: &Self) -> bool {
+        let natural = [self, other].map(|own| own.natural.as_ref());
+        let factors = natural.map(|own| own.map(NaturalCurvature::profile));
+        self.yields.is_empty() && other.yields.is_empty() && factors[0] == factors[1]
+    }
+
+    /// Whether a point is the same as that of another plate that is comparable, with the same stencil.
+    pub(super) fn is_same(&self, other: &Self, point: usize) -> bool {
+        let natural = [self, other].map(|of| of.natural.as_ref().map(|own| own.own(point)));
+        let (a, b) = (&self.points[point], &other.points[point]);
+        natural[0] == natural[1]
+            && a.corners == b.corners
+            && a.area == b.area
+            && self.roots.rigidity(face_of(point)) == other.roots.rigidity(face_of(point))
+    }
+
     /// Hands all points at positions to `take`.
     pub(super) fn evaluate<R>(
         &self,

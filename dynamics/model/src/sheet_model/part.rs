@@ -2,8 +2,8 @@
 
 use isosheet_materials::hessian::HessianSink;
 use isosheet_materials::potential::{
-    At, CouplingKind, HessianKind, Limited, MaterialReport, Potential, PotentialShape, Reached,
-    Remembering, Settled,
+    At, CouplingKind, Difference, HessianKind, Limited, MaterialReport, Potential, PotentialShape,
+    Reached, Remembering, Settled,
 };
 use isosheet_materials::{LimitError, NoDerivative};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
@@ -83,11 +83,17 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
             .add_semidefinite_hessian(self.own(at), hessian);
     }
 
-    fn is_same(&self, other: &dyn Potential) -> bool {
+    fn difference(&self, other: &dyn Potential) -> Difference {
         let other: Option<&Self> = (other as &dyn Any).downcast_ref();
-        other.is_some_and(|other| {
-            self.part == other.part && self.potential.is_same(&other.potential)
-        })
+        match other.filter(|other| self.part == other.part) {
+            Some(other) => self.potential.difference(&other.potential),
+            None => Difference::Everything,
+        }
+    }
+
+    fn add_gradient_of(&self, parts: &[u32], at: At<'_>, gradient: &mut [f64]) {
+        let own = &mut gradient[self.part.coordinates()];
+        self.potential.add_gradient_of(parts, self.own(at), own);
     }
 
     fn hessian_kind(&self) -> HessianKind {
@@ -181,11 +187,6 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
         self.remembers().settle(self.reached(state), memory)
     }
 
-    fn remembers_the_same(&self, other: &dyn Potential) -> bool {
-        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
-        other.is_some_and(|other| self.remembers().remembers_the_same(&other.potential))
-    }
-
     fn choices(&self, state: Reached<'_>, memory: &[f64]) -> Vec<f64> {
         self.remembers().choices(self.reached(state), memory)
     }
@@ -193,6 +194,25 @@ impl<P: Potential> Remembering for PotentialOfPart<P> {
     fn settle_by(&self, choices: &[f64], state: Reached<'_>, memory: &mut [f64]) {
         self.remembers()
             .settle_by(choices, self.reached(state), memory);
+    }
+
+    fn memory_difference(&self, other: &dyn Potential) -> Difference {
+        let other: Option<&Self> = (other as &dyn Any).downcast_ref();
+        match other.filter(|other| self.part == other.part) {
+            Some(other) => self.remembers().memory_difference(&other.potential),
+            None => Difference::Everything,
+        }
+    }
+
+    fn settled_product(
+        &self,
+        parts: Option<&[u32]>,
+        state: Reached<'_>,
+        found: (&[f64], &[f64]),
+        of: &[f64],
+    ) -> f64 {
+        self.remembers()
+            .settled_product(parts, self.reached(state), found, of)
     }
 
     fn add_memory_products(
