@@ -139,10 +139,9 @@ impl Advice for AdjointError {
             Self::Method { .. } => Some("use BDF2, implicit Euler or a search for equilibria"),
             Self::NoDerivative { source, .. } => source.advice(),
             Self::Event { .. } => Some("take shorter steps, or pass it by (`Branches::PassBy`)"),
-            Self::Unsolved { .. } => {
+            Self::Unsolved { .. } | Self::Linalg { .. } => {
                 Some("the state is near a branch: end the run before it, or ask for less accuracy")
             }
-            Self::Linalg { .. } => None,
             Self::OtherSheet { .. } => {
                 Some("keep mesh and pinned vertices the same for all numbers")
             }

@@ -197,7 +197,7 @@ impl Family for SceneFamily {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_adjoint::{AdjointOptions, Run, coordinate};
+    use isosheet_adjoint::{AdjointError, AdjointOptions, Branches, Run, StepEvent, coordinate};
 
     const TEXT: &str = "\
 version = 1
@@ -248,6 +248,57 @@ time = 0.055
             let found = gradient.of_numbers[k];
             // (What steps leave of the forces, a part 1e-5, is in the differences.)
             assert!((found / slope - 1.0).abs() < 1e-4, "{k}: {found} {slope}");
+        }
+    }
+
+    /// A block beside a sheet falls on the floor. Where its velocities are corrected is a branch.
+    #[test]
+    fn impacts_of_bodies_are_refused_or_named() {
+        let text = "\
+version = 1
+[sheet]
+mesh = { square = { side = 0.1, level = 0 } }
+material = 'office paper'
+[[support]]
+at = { nearest = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]] }
+[[body]]
+shape = { box = { size = [0.05, 0.04, 0.03] } }
+mass = 0.1
+pose = { position = [0.3, 0.0, 0.0] }
+[[obstacle]]
+shape = 'half_space'
+pose = { position = [0.0, 0.0, -0.04] }
+[forces]
+gravity = [0.0, 0.0, -9.81]
+[contact]
+[method]
+step = 0.01
+[stop]
+time = 0.2
+";
+        let keys = vec!["forces.gravity[2]".to_owned()];
+        let family = SceneFamily::of_text(text, Path::new("block.toml"), Vec::new(), keys);
+        let family = family.expect("a key");
+        let plan = family.plan().expect("steps");
+        let values = family.values().expect("a number");
+        let gradient = |branches| {
+            let options = AdjointOptions {
+                branches,
+                ..AdjointOptions::default()
+            };
+            let run = Run::record(&family, &values, plan.clone(), options).expect("a run");
+            run.gradient(&coordinate(5, 2, 20))
+        };
+        let error = gradient(Branches::Refuse).expect_err("an impact");
+        let event = StepEvent::Restitution;
+        assert!(
+            matches!(error, AdjointError::Event { event: found, .. } if found == event),
+            "{error}"
+        );
+        let passed_by = gradient(Branches::PassBy).expect("a gradient").passed_by;
+        assert!(!passed_by.is_empty());
+        for passed in passed_by {
+            assert!(passed.what.contains("bodies met"), "{passed:?}");
         }
     }
 

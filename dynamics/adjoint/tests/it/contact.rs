@@ -127,54 +127,56 @@ const FACES: [[u32; 3]; 12] = [
     [3, 7, 5],
 ];
 
+/// A block over an inclined plane: gravity, friction, its mass; `above` is the distance from the plane, metres.
+fn block(p: &[f64], above: f64) -> Result<Scene, SceneError> {
+    let plane = Isometry3::rotation(Vector3::new(0.0, 0.5, 0.0));
+    let pose = plane
+        * Isometry3::new(
+            Vector3::new(0.0, 0.0, 0.025 + above),
+            Vector3::new(0.002, 0.001, 0.0),
+        );
+    let sides = Vector3::new(0.1, 0.08, 0.05);
+    let own = Matrix3::from_diagonal(&sides.map(|a| p[2] * a * a / 12.0));
+    let turn = pose.rotation.to_rotation_matrix().into_inner();
+    let moments = turn * own * turn.transpose();
+    let moments = 0.5 * (moments + moments.transpose());
+    let body = RigidBody::new(p[2], pose.translation.vector.into(), moments.into())?;
+    let corner = |i: u32| -> [f64; 3] {
+        let sign = |k: u32| if i >> k & 1 == 0 { -0.5 } else { 0.5 };
+        let local = Vector3::new(sign(0), sign(1), sign(2)).component_mul(&sides);
+        (pose * Point3::from(local)).into()
+    };
+    let surface = Sheet::new((0..8).flat_map(corner).collect(), &FACES)?;
+    let tetrahedron = body.tetrahedron();
+    let masses = MassMatrix::from_vertex_masses(body.mass_matrix().vertex)?;
+    let model = SheetModel::with_mass(&tetrahedron, masses)?.with_acceleration([0.0, 0.0, -p[0]]);
+    let corners = surface.positions().as_chunks::<3>().0.iter();
+    let carried = corners.map(|p| body.carried(*p, VertexId(0)));
+    let points = SurfacePoints::new(4, 0, carried.collect())?;
+    let options = isosheet_collide::ContactOptions::for_surface(&surface, &points);
+    let floor = Obstacle::fixed(Shape::HalfSpace, plane)?;
+    let contacts = Contacts::on_surface(&surface, points, options)?
+        .with_body(floor, Coefficients::equal(p[1]))?;
+    let start = State::at_rest(tetrahedron.positions().to_vec());
+    Ok(Scene::new(model, start).with_contact(contacts))
+}
+
 /// A block that responds slides down an inclined plane, and turns: gravity, friction, its mass.
 #[test]
 fn a_block_slides_down_an_inclined_plane() {
-    let family = |p: &[f64]| -> Result<Scene, SceneError> {
-        let plane = Isometry3::rotation(Vector3::new(0.0, 0.5, 0.0));
-        let pose = plane
-            * Isometry3::new(
-                Vector3::new(0.0, 0.0, 0.025 + 6e-4),
-                Vector3::new(0.002, 0.001, 0.0),
-            );
-        let sides = Vector3::new(0.1, 0.08, 0.05);
-        let own = Matrix3::from_diagonal(&sides.map(|a| p[2] * a * a / 12.0));
-        let turn = pose.rotation.to_rotation_matrix().into_inner();
-        let moments = turn * own * turn.transpose();
-        let moments = 0.5 * (moments + moments.transpose());
-        let body = RigidBody::new(p[2], pose.translation.vector.into(), moments.into())?;
-        let corner = |i: u32| -> [f64; 3] {
-            let sign = |k: u32| if i >> k & 1 == 0 { -0.5 } else { 0.5 };
-            let local = Vector3::new(sign(0), sign(1), sign(2)).component_mul(&sides);
-            (pose * Point3::from(local)).into()
-        };
-        let surface = Sheet::new((0..8).flat_map(corner).collect(), &FACES)?;
-        let tetrahedron = body.tetrahedron();
-        let masses = MassMatrix::from_vertex_masses(body.mass_matrix().vertex)?;
-        let model =
-            SheetModel::with_mass(&tetrahedron, masses)?.with_acceleration([0.0, 0.0, -p[0]]);
-        let corners = surface.positions().as_chunks::<3>().0.iter();
-        let carried = corners.map(|p| body.carried(*p, VertexId(0)));
-        let points = SurfacePoints::new(4, 0, carried.collect())?;
-        let options = isosheet_collide::ContactOptions::for_surface(&surface, &points);
-        let floor = Obstacle::fixed(Shape::HalfSpace, plane)?;
-        let contacts = Contacts::on_surface(&surface, points, options)?
-            .with_body(floor, Coefficients::equal(p[1]))?;
-        let start = State::at_rest(tetrahedron.positions().to_vec());
-        Ok(Scene::new(model, start).with_contact(contacts))
-    };
     let plan = Plan::steps(bdf2(), 4e-3, 12);
     let loss = coordinate(0, 0, 12);
     let name = "a block on a plane";
     checked(
         name,
-        &|p: &[f64]| family(&[p[0], p[1], 0.5]),
+        &|p: &[f64]| block(&[p[0], p[1], 0.5], 6e-4),
         &[9.8, 0.2],
         &plan,
         &loss,
         1e-3,
     );
     // The motion does not depend on the mass, but by the barrier, which carries it alike.
+    let family = |p: &[f64]| block(p, 6e-4);
     let run = Run::record(&family, &[9.8, 0.2, 0.5], plan, AdjointOptions::default());
     let gradient = run.expect("a run").gradient(&loss).expect("a gradient");
     assert!(
@@ -182,4 +184,56 @@ fn a_block_slides_down_an_inclined_plane() {
         "{:?}",
         gradient.of_numbers
     );
+}
+
+/// Two blocks of which one moves towards the other by `speed`, metres per second.
+fn two_blocks(speed: f64) -> Result<Scene, SceneError> {
+    let (side, gap) = (0.05, 8e-3);
+    let moments = Matrix3::from_diagonal_element(0.5 * side * side / 6.0);
+    let (mut corners, mut faces) = (Vec::new(), Vec::new());
+    let (mut sheets, mut masses, mut carried) = (Vec::new(), Vec::new(), Vec::new());
+    for k in 0..2u32 {
+        // (Turned a little, so that a corner meets a face.)
+        let turn = 0.1 * f64::from(k);
+        let pose = Isometry3::new(
+            Vector3::new(0.0, 0.0, f64::from(k) * (side + gap)),
+            Vector3::new(turn, 0.5 * turn, 0.0),
+        );
+        let body = RigidBody::new(0.5, pose.translation.vector.into(), moments.into())?;
+        let corner = |i: u32| -> [f64; 3] {
+            let sign = |axis: u32| if i >> axis & 1 == 0 { -0.5 } else { 0.5 };
+            (pose * Point3::from(side * Vector3::new(sign(0), sign(1), sign(2)))).into()
+        };
+        let own: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        carried.extend(own.iter().map(|p| body.carried(*p, VertexId(4 * k))));
+        corners.extend(own.into_iter().flatten());
+        faces.extend(FACES.map(|face| face.map(|v| v + 8 * k)));
+        sheets.push(body.tetrahedron());
+        masses.push(MassMatrix::from_vertex_masses(body.mass_matrix().vertex)?);
+    }
+    let surface = Sheet::new(corners, &faces)?;
+    let both = Sheet::union(&[&sheets[0], &sheets[1]])?;
+    let model = SheetModel::with_mass(&both, MassMatrix::union(&masses))?;
+    let points = SurfacePoints::new(8, 0, carried)?;
+    let options = isosheet_collide::ContactOptions::for_surface(&surface, &points);
+    let contacts = Contacts::on_surface(&surface, points, options)?
+        .with_self_contact(Coefficients::FRICTIONLESS)?
+        .with_parts(&[0..8, 8..16], []);
+    let mut v = vec![0.0; 24];
+    v[12..]
+        .iter_mut()
+        .skip(2)
+        .step_by(3)
+        .for_each(|v| *v = -speed);
+    let start = State::moving(both.positions().to_vec(), v);
+    Ok(Scene::new(model, start).with_contact(contacts))
+}
+
+/// Two blocks meet, and turn.
+#[test]
+fn two_blocks_meet() {
+    let family = |p: &[f64]| two_blocks(p[0]);
+    let plan = Plan::steps(bdf2(), 1e-2, 6);
+    let loss = coordinate(0, 2, 6);
+    checked("two blocks", &family, &[0.5], &plan, &loss, 1e-3);
 }

@@ -3,10 +3,14 @@
 use crate::support::{as_meshed, bdf2};
 use isosheet_adjoint::{
     AdjointError, AdjointOptions, Branches, Kept, OfState, Plan, Run, Scene, SceneError, Share,
-    coordinate,
+    StepEvent, coordinate,
 };
-use isosheet_dynamics::{Force, Material, Method, RattleOptions, SheetModel, State, Yield};
-use isosheet_mesh::{Advice, MassKind, VertexId, generate};
+use isosheet_dynamics::{
+    At, EnergyMomentumOptions, Fallback, Force, HessianSink, ImplicitOptions, Material, Method,
+    Potential, RattleOptions, SheetModel, State, StepControl, Yield,
+};
+use isosheet_mesh::{Advice, EdgeId, MassKind, Sheet, VertexId, generate};
+use nalgebra::{Matrix3, Vector3};
 
 /// A force that does not say how it depends on positions.
 #[derive(Debug)]
@@ -219,4 +223,94 @@ fn runs_that_cannot_be_repeated_are_refused() {
         AdjointError::NotRepeated { .. } | AdjointError::Start(_)
     );
     assert!(expected, "{error}");
+}
+
+/// The unstable potential `-k (sum z)^2 / 2` of the heights of the vertices of a triangle.
+#[derive(Debug)]
+struct Unstable(f64);
+
+impl Unstable {
+    fn sum(at: At<'_>) -> f64 {
+        at.x.iter().skip(2).step_by(3).sum()
+    }
+}
+
+impl Potential for Unstable {
+    fn energy(&self, at: At<'_>) -> f64 {
+        -0.5 * self.0 * Self::sum(at).powi(2)
+    }
+
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        for g in gradient.iter_mut().skip(2).step_by(3) {
+            *g -= self.0 * Self::sum(at);
+        }
+    }
+
+    fn add_hessian(&self, _at: At<'_>, hessian: &mut dyn HessianSink) {
+        let block = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.0));
+        for k in 0..3 {
+            hessian.add_vertex(VertexId(k), &block);
+            hessian.add_edge(EdgeId(k), &block);
+        }
+    }
+}
+
+/// At a branch the matrix of a step is singular: here that of three masses `m` at once, less `3 h^2 k = m`.
+#[test]
+fn branches_are_refused() {
+    let (m, h) = (1e-3, 0.5);
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let corners = [0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0];
+        let sheet = Sheet::new(corners.to_vec(), &[[0, 1, 2]])?;
+        let model = SheetModel::new(&sheet, 3.0 * m, MassKind::Lumped)?
+            .with_potential(Unstable(p[0] * m / (3.0 * h * h)));
+        Ok(as_meshed(model, &sheet))
+    };
+    let method = Method::ImplicitEuler(ImplicitOptions::default());
+    let plan = Plan::steps(method, h, 1);
+    let gradient = |part: f64| {
+        let run = Run::record(&family, &[part], plan.clone(), AdjointOptions::default());
+        run.expect("a run").gradient(&coordinate(0, 2, 1))
+    };
+    let error = gradient(1.0).expect_err("a branch");
+    assert!(
+        matches!(error, AdjointError::Unsolved { t, residual } if t == h && residual > 1e-6),
+        "{error}"
+    );
+    assert!(error.advice().is_some());
+    // Below it a mean height at the start grows to `1 / (1 - 3 h^2 k / m)` of it.
+    let of_start = gradient(0.9).expect("a gradient").of_start.x;
+    let of_heights: f64 = of_start.iter().skip(2).step_by(3).sum();
+    assert!((of_heights - 10.0).abs() < 1e-6, "{of_start:?}");
+}
+
+/// A flat loaded sheet of rods that a conservative method cannot leave: the fallback does, and is a branch.
+#[test]
+fn fallbacks_are_refused_or_named() {
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let sheet = generate::isotropic_square(1, 0.21)?;
+        let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+            .with_acceleration([0.0, 0.0, -p[0]])
+            .with_pins(&[VertexId(20)])?;
+        Ok(as_meshed(model, &sheet))
+    };
+    let plan = Plan {
+        method: Method::EnergyMomentum(EnergyMomentumOptions::default()),
+        control: StepControl {
+            fallback: Fallback::ImplicitEuler(ImplicitOptions::default()),
+            ..StepControl::default()
+        },
+        steps: vec![1.0 / 60.0],
+    };
+    let run = Run::record(&family, &[9.8], plan, AdjointOptions::default()).expect("a run");
+    let error = run.gradient(&coordinate(0, 2, 1)).expect_err("a fallback");
+    let expected = matches!(
+        error,
+        AdjointError::Event {
+            event: StepEvent::Fallback,
+            ..
+        }
+    );
+    assert!(expected, "{error}");
+    assert!(error.to_string().contains("fallback"), "{error}");
 }
