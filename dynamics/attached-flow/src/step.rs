@@ -3,7 +3,8 @@
 use super::Attached;
 use super::wake::Past;
 use isosheet_dynamics::term::{
-    BlockSink, Exchange, Formula, HessianPart, ImplicitForce, Iterate, StepStart, Term, Value,
+    BlockSink, Exchange, Formula, HessianPart, ImplicitForce, Iterate, Lagging, StepStart, Term,
+    Value,
 };
 use isosheet_dynamics::{Force, StepError};
 use isosheet_materials::vectors::{add, dot, largest_norm};
@@ -376,8 +377,8 @@ impl Term for FlowStep {
         }
     }
 
-    fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
-        let settled = settled.min(SETTLED);
+    fn renew(&mut self, at: Iterate<'_>, settled: Lagging) -> bool {
+        let settled = settled.loads.min(SETTLED);
         let here = self.own(at.x);
         let forces = self.lagged.forces(&here);
         let lag = self.lagged.lag(&here);

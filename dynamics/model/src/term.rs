@@ -190,9 +190,8 @@ pub trait Term: Any + Send {
         self.add_hessian(at, HessianPart::Full, product);
     }
 
-    /// Brings what lags to the iterate, if it has changed by more than `settled`, a relative measure; whether
-    /// it has.
-    fn renew(&mut self, _at: Iterate<'_>, _settled: f64) -> bool {
+    /// Brings what lags to the iterate, unless it has settled; whether it had not.
+    fn renew(&mut self, _at: Iterate<'_>, _settled: Lagging) -> bool {
         false
     }
 
@@ -309,6 +308,23 @@ impl StepStart<'_> {
         }
         Exchange::driven(work)
     }
+}
+
+/// Relative changes below which what lags in a step counts as settled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lagging {
+    /// Of the normal forces of friction.
+    pub friction: f64,
+    /// Of loads that follow the sheet.
+    pub loads: f64,
+}
+
+impl Lagging {
+    /// Whatever has changed is renewed.
+    pub const NOT_AT_ALL: Self = Self {
+        friction: 0.0,
+        loads: 0.0,
+    };
 }
 
 /// Derivatives of a number by what a step starts from, `3V` each, per metre.

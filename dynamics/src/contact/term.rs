@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{SheetModel, State, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
-use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
+use isosheet_model::term::{Barrier, Exchange, Iterate, Lagging, StepStart, Term, Value};
 use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.
@@ -473,7 +473,7 @@ impl Term for ContactTerm {
     /// Lags friction of the step anew where a normal force has changed by more than `settled`, relative to
     /// the largest. Otherwise friction remains that for which the iterate was found, and the forces of the
     /// step balance.
-    fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
+    fn renew(&mut self, at: Iterate<'_>, settled: Lagging) -> bool {
         self.at(at.x);
         let step = self.step.as_mut().expect("a step has begun");
         let ContactState {
@@ -488,7 +488,7 @@ impl Term for ContactTerm {
         };
         let course = step.velocity.course(&step.start);
         friction.lag(self.geometry.laws(), barrier, active, course, x);
-        let has_changed = friction.change_since(&step.friction_before) > settled;
+        let has_changed = friction.change_since(&step.friction_before) > settled.friction;
         match has_changed {
             true => step.lags.push(step.x.clone()),
             false => std::mem::swap(friction, &mut step.friction_before),

@@ -27,7 +27,8 @@ pub struct ImplicitOptions {
     /// most. Default 400.
     pub max_projections: usize,
     /// Largest change of a normal force between the last two updates of lagged friction, relative to the
-    /// largest normal force. Default 1e-3; at least 0.05 in the augmented Lagrangian.
+    /// largest normal force, at least 0.05 in the augmented Lagrangian; and of loads that follow the sheet,
+    /// relative to the largest load, at most 1e-3. Default 1e-3.
     pub friction_tolerance: f64,
     /// Largest number of updates of lagged friction, and of loads that follow the sheet, per sub-step.
     /// Default 5.

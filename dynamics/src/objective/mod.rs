@@ -15,7 +15,7 @@ use isosheet_linalg::parallel::both;
 use isosheet_materials::hessian::{BlockSink, HessianProduct};
 use isosheet_materials::potential::{At, Difference};
 use isosheet_model::PINNED;
-use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
+use isosheet_model::term::{Barrier, Exchange, Iterate, Lagging, StepStart, Term, Value};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -370,8 +370,8 @@ impl Objective {
         self.terms().for_each(|term| term.advance(part));
     }
 
-    /// Brings what lags to the iterate; whether it had changed by more than `settled`.
-    pub(crate) fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
+    /// Brings what lags to the iterate; whether it had not settled.
+    pub(crate) fn renew(&mut self, at: Iterate<'_>, settled: Lagging) -> bool {
         self.terms()
             .fold(false, |any, term| any | term.renew(at, settled))
     }

@@ -13,7 +13,7 @@ use isosheet_materials::hessian::{
 use isosheet_materials::vectors::diameter;
 use isosheet_materials::{At, Difference, HessianKind, NoDerivative, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
-use isosheet_model::term::{Formula, Iterate, StartProducts, StepStart};
+use isosheet_model::term::{Formula, Iterate, Lagging, StartProducts, StepStart};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -130,7 +130,7 @@ impl<'a> StepEquations<'a> {
         }
         let at = at(step, x);
         for term in self.objective.without_contact() {
-            term.renew(at, 0.0);
+            term.renew(at, Lagging::NOT_AT_ALL);
         }
         Ok(())
     }

@@ -164,10 +164,17 @@ impl SceneFamily {
 /// part 1e-5 of the forces, the square root. What a step of a scene leaves is a hundredth.
 const TOLERANCE: f64 = 1e-10;
 
-/// A method whose steps are solved to [`TOLERANCE`].
+/// When friction and loads that follow the sheet count as settled in such steps, and after how many updates
+/// at most.
+const SETTLED: f64 = 1e-8;
+const UPDATES: usize = 40;
+
+/// A method whose steps are solved to [`TOLERANCE`], with friction and loads that have settled.
 fn solved(method: Method) -> Method {
     let solved = |options: ImplicitOptions| ImplicitOptions {
         tolerance: Some(TOLERANCE),
+        friction_tolerance: SETTLED,
+        max_friction_updates: UPDATES,
         ..options
     };
     match method {

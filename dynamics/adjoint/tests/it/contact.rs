@@ -237,3 +237,45 @@ fn two_blocks_meet() {
     let loss = coordinate(0, 2, 6);
     checked("two blocks", &family, &[0.5], &plan, &loss, 1e-3);
 }
+
+/// A strip whose end is held by a cylinder that turns rolls up on it, with friction on itself: the speed of
+/// the turn, the coefficient, gravity.
+#[test]
+fn a_strip_rolls_up() {
+    let (radius, length, cells) = (0.01, 0.1, 20);
+    let gap = 3e-4;
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let grid = generate::anisotropic_grid(cells, 2, length, 0.02)?;
+        // (Along the top of the cylinder, and a little aslant, so that it does not roll onto its own edge.)
+        let sheet = grid.map_positions(|[x, y, _]| [x - 0.005, y + 0.05 * x, radius + gap])?;
+        let held = grid.vertices_where(|[x, _, _]| x < 0.011);
+        let turn = move |rate: f64| {
+            move |t: f64| Isometry3::rotation(Vector3::new(0.0, -rate * t * t, 0.0))
+        };
+        let mut film = Material::office_paper();
+        (film.rigidity, film.stiffness) = (2e-5, 3e3);
+        let mut model = SheetModel::of_material(&sheet, &film)
+            .build()?
+            .with_acceleration([0.0, 0.0, -p[2]]);
+        for v in held {
+            let at = Point3::from(sheet.position(v));
+            let turn = turn(p[0]);
+            model = model.with_moving_pin(v, move |t: f64| (turn(t) * at).into())?;
+        }
+        let along_y = Isometry3::rotation(Vector3::new(0.5 * std::f64::consts::PI, 0.0, 0.0));
+        let turn = turn(p[0]);
+        let motion = isosheet_dynamics::RigidMotion::from(move |t: f64| turn(t) * along_y);
+        let shape = Shape::Cylinder {
+            radius,
+            half_height: 0.05,
+        };
+        let cylinder = Obstacle::new(shape, motion)?;
+        let contacts = Contacts::for_sheet(&model, [cylinder], Coefficients::equal(p[1]))?;
+        let start = State::at_rest(sheet.positions().to_vec());
+        Ok(Scene::new(model, start).with_contact(contacts))
+    };
+    let plan = Plan::steps(bdf2(), 1e-2, 36);
+    let loss = coordinate(cells, 2, 36);
+    let numbers = [40.0, 0.3, 9.8];
+    checked("rolled", &family, &numbers, &plan, &loss, 1e-3);
+}

@@ -3,9 +3,9 @@
 use crate::support::{as_meshed, bdf2, checked, exact};
 use isosheet_adjoint::{Plan, Scene, SceneError, coordinate};
 use isosheet_dynamics::{
-    Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Material, MaterialDirection,
-    Method, NaturalTensor, PlateBending, PlateStiffness, Profile, SheetModel, State, VertexLoad,
-    Wind,
+    Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Gas, LoadedFaces, Material,
+    MaterialDirection, Method, NaturalTensor, PlateBending, PlateStiffness, Profile, SheetModel,
+    State, VertexLoad, Wind,
 };
 use isosheet_mesh::{FaceId, MassKind, Sheet, VertexId, generate};
 
@@ -367,4 +367,45 @@ fn the_state_at_the_start() {
     {
         assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     }
+}
+
+/// A membrane that a pressure blows up, held by its edge, and a tent that a gas blows up.
+#[test]
+fn blown_up() {
+    let open = |p: &[f64]| -> Result<Scene, SceneError> {
+        let sheet = generate::isotropic_square(2, 0.2)?;
+        let faces = LoadedFaces::all(sheet.topology())?;
+        let t = sheet.topology();
+        let edge: Vec<VertexId> = t
+            .vertex_ids()
+            .filter(|v| t.is_boundary_vertex(*v))
+            .collect();
+        let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
+            .with_pins(&edge)?
+            .with_elastic_sheet(ElasticSheet::new(&sheet, p[1], 0.3)?)?
+            .with_pressure(faces, p[0])?;
+        Ok(as_meshed(model, &sheet))
+    };
+    let plan = Plan::steps(bdf2(), 5e-3, 10);
+    let loss = coordinate(20, 2, 10);
+    checked("blown up", &open, &[5.0, 300.0], &plan, &loss, 1e-6);
+    let closed = |p: &[f64]| -> Result<Scene, SceneError> {
+        let corners = vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1];
+        let tent = Sheet::new(corners, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+        let sheet = generate::split_1_4(&generate::split_1_4(&tent)?)?;
+        let faces = LoadedFaces::all(sheet.topology())?;
+        let gas = Gas {
+            pressure: Gas::default().ambient + p[0],
+            exponent: p[1],
+            ..Gas::default()
+        };
+        let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
+            .with_gravity()
+            .with_pins(&[VertexId(0)])?
+            .with_elastic_sheet(ElasticSheet::new(&sheet, 300.0, 0.3)?)?
+            .with_gas(faces, gas, sheet.positions())?;
+        Ok(as_meshed(model, &sheet))
+    };
+    let loss = coordinate(3, 2, 10);
+    checked("gas", &closed, &[30.0, 1.4], &plan, &loss, 1e-6);
 }

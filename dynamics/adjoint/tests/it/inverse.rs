@@ -1,98 +1,16 @@
-//! Closed forms, and searches that gradients lead.
+//! Searches that gradients lead.
 
+use crate::closed_forms::{LENGTH, at_rest, strip};
 use crate::search::minimise;
-use crate::support::{as_meshed, exact};
+use crate::support::as_meshed;
 use isosheet_adjoint::{
     AdjointOptions, Family, OfState, Plan, Run, Scene, SceneError, Share, coordinate,
     squared_distances,
 };
 use isosheet_dynamics::{
-    Curl, Curvature, Material, MaterialDirection, Method, NaturalTensor, SheetModel, State,
+    Curl, Curvature, Material, MaterialDirection, NaturalTensor, SheetModel, State,
 };
-use isosheet_mesh::{Sheet, VertexId, generate};
-
-const LENGTH: f64 = 0.3;
-
-fn at_rest() -> Plan {
-    Plan::steps(Method::Equilibrium(exact()), 1.0, 1)
-}
-
-/// A strip that is clamped at its left end, with a width of a tenth of its length.
-fn strip(cells: usize) -> Result<Sheet, SceneError> {
-    // The clamp is a column of faces before the strip.
-    let cell = LENGTH / cells as f64;
-    let grid = generate::anisotropic_grid(cells + 1, 2, LENGTH + cell, 0.1 * LENGTH)?;
-    Ok(grid.map_positions(|[x, y, z]| [x - cell, y, z])?)
-}
-
-/// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of
-/// its width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.
-fn elastica(p: &[f64]) -> Result<Scene, SceneError> {
-    let sheet = strip(24)?;
-    let clamp = sheet.vertices_where(|[x, _, _]| x < 1e-9);
-    let mut film = Material::office_paper();
-    film.poisson = 0.0;
-    // Gamma = density g L^3 / rigidity.
-    film.rigidity = film.density * 9.8 * LENGTH.powi(3) / p[0];
-    film.stiffness = 3e3;
-    let model = SheetModel::of_material(&sheet, &film)
-        .clamped(&clamp)
-        .build()?
-        .with_acceleration([0.0, 0.0, -9.8]);
-    Ok(as_meshed(model, &sheet))
-}
-
-/// The sag over the length of an inextensible elastica under its weight, by shooting:
-/// `theta'' = -Gamma (1 - s) cos theta` with `theta(0) = 0` and `theta'(1) = 0`, by steps of Runge and Kutta.
-fn sag(gamma: f64) -> f64 {
-    let shoot = |slope: f64| -> [f64; 3] {
-        let steps = 2000;
-        let h = 1.0 / f64::from(steps);
-        let rate = |s: f64, [angle, slope, _]: [f64; 3]| {
-            [slope, -gamma * (1.0 - s) * angle.cos(), angle.sin()]
-        };
-        let mut y = [0.0, slope, 0.0];
-        for k in 0..steps {
-            let s = h * f64::from(k);
-            let along = |d: [f64; 3], part: f64| std::array::from_fn(|i| y[i] + part * h * d[i]);
-            let a = rate(s, y);
-            let b = rate(s + 0.5 * h, along(a, 0.5));
-            let c = rate(s + 0.5 * h, along(b, 0.5));
-            let d = rate(s + h, along(c, 1.0));
-            y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
-        }
-        y
-    };
-    // The moment at the tip grows with the slope at the clamp.
-    let (mut low, mut high) = (0.0, gamma);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        match shoot(middle)[1] > 0.0 {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    shoot(0.5 * (low + high))[2]
-}
-
-/// The derivative of the tip by Gamma, for a small and for a moderate sag.
-#[test]
-fn the_tip_of_the_elastica() {
-    let tip = 25;
-    for gamma in [0.1, 3.0] {
-        let run = Run::record(&elastica, &[gamma], at_rest(), AdjointOptions::default());
-        let gradient = run.expect("a run").gradient(&coordinate(tip, 2, 1));
-        let gradient = gradient.expect("a gradient");
-        let step = 1e-3 * gamma;
-        let expected = -LENGTH * (sag(gamma + step) - sag(gamma - step)) / (2.0 * step);
-        let found = gradient.of_numbers[0];
-        println!("Gamma {gamma}: {found} {expected} {}", -LENGTH / 8.0);
-        assert!(
-            (found / expected - 1.0).abs() < 5e-3,
-            "{gamma}: {found} {expected}"
-        );
-    }
-}
+use isosheet_mesh::VertexId;
 
 fn solve(family: &dyn Family, plan: &Plan, start: f64, vertex: usize, target: f64) -> (f64, usize) {
     let count = plan.steps.len();

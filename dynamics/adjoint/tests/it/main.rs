@@ -1,5 +1,6 @@
 //! Gradients beside central differences, closed forms and searches.
 
+mod closed_forms;
 mod contact;
 mod differences;
 mod forces;

@@ -22,7 +22,7 @@ impl Force for Silent {
     }
 }
 
-fn curved() -> Result<isosheet_mesh::Sheet, SceneError> {
+fn curved() -> Result<Sheet, SceneError> {
     let square = generate::isotropic_square(1, 0.1)?;
     Ok(square.map_positions(|[x, y, _]| [x, y, 2.0 * x * x - y * (y - 0.02)])?)
 }

@@ -5,7 +5,9 @@ pub(super) mod tests;
 
 use super::loaded_faces::Corners;
 use crate::StepError;
-use crate::term::{Exchange, ImplicitForce, Iterate, StartProducts, StepStart, Term, Value};
+use crate::term::{
+    Exchange, ImplicitForce, Iterate, Lagging, StartProducts, StepStart, Term, Value,
+};
 use isosheet_materials::NoDerivative;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::Force;
@@ -237,8 +239,8 @@ impl<L: FaceLoad> Term for FollowerStep<L> {
         }
     }
 
-    fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
-        if self.error(at) <= settled.min(SETTLED) {
+    fn renew(&mut self, at: Iterate<'_>, settled: Lagging) -> bool {
+        if self.error(at) <= settled.loads.min(SETTLED) {
             return false;
         }
         self.lag(at.t, at.x);

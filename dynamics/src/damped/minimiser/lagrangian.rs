@@ -19,6 +19,7 @@ use isosheet_mesh::VertexId;
 use isosheet_model::Cut;
 use isosheet_model::PINNED;
 use isosheet_model::StepError;
+use isosheet_model::term::Lagging;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -548,9 +549,9 @@ impl Lagrangian {
         problem.model.place_pins(problem.t(), &mut self.x);
     }
 
-    /// Brings what lags to the iterate where it has changed by more than `settled`, such as the normal forces
-    /// of friction, relative to the largest; whether it has.
-    pub(super) fn renew(&mut self, problem: &mut StepProblem<'_>, settled: f64) -> bool {
+    /// Brings what lags to the iterate where it has not settled, such as the normal forces of friction;
+    /// whether it had not.
+    pub(super) fn renew(&mut self, problem: &mut StepProblem<'_>, settled: Lagging) -> bool {
         let (objective, at) = problem.objective_at(&self.x);
         objective.renew(at, settled)
     }

@@ -548,7 +548,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             return false;
         }
         let lagrangian = &mut self.work.lagrangian;
-        let is_renewed = lagrangian.renew(self.problem, self.phase.friction_tolerance);
+        let is_renewed = lagrangian.renew(self.problem, self.phase.lagging);
         if is_renewed {
             lagrangian.merit(self.problem);
         }

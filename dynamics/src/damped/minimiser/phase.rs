@@ -5,6 +5,7 @@ use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_mesh::area_from_lengths;
+use isosheet_model::term::Lagging;
 
 /// What the slimmest face of a sheet allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +93,8 @@ pub(super) struct Phase {
     pub(super) small_strain: f64,
     /// Largest number of iterations of a restoration.
     pub(super) restorations: usize,
-    pub(super) friction_tolerance: f64,
+    /// When friction and loads have settled.
+    pub(super) lagging: Lagging,
     pub(super) friction_updates: usize,
     pub(super) saddle: Saddle,
 }
@@ -209,7 +211,10 @@ impl Phase {
                 true => f64::INFINITY,
                 false => tuning.small_strain,
             },
-            friction_tolerance: options.friction_tolerance,
+            lagging: Lagging {
+                friction: options.friction_tolerance,
+                loads: options.friction_tolerance,
+            },
             friction_updates: options.max_friction_updates,
             saddle: match has_contact {
                 true => Saddle::Ignored,
@@ -241,7 +246,10 @@ impl Phase {
                 true => tuning.small_strain,
                 false => f64::INFINITY,
             },
-            friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
+            lagging: Lagging {
+                friction: options.friction_tolerance.max(tuning.friction_settled),
+                loads: options.friction_tolerance,
+            },
             friction_updates: options.max_friction_updates,
             saddle: Saddle::Perturbation,
         }
