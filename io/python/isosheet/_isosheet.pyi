@@ -103,9 +103,10 @@ class Scene:
     def simulate(self, folder: _Path) -> Run: ...
     def gradient(
         self,
-        loss: Callable[[_Floats, _Floats], tuple[float, _Floats]],
+        loss: Callable[..., tuple[float, *tuple[_Floats, ...]]],
         of: Sequence[str],
-        branches: str = "refuse",
+        branches: Literal["refuse", "pass by"] = "refuse",
+        also: Sequence[Literal["velocities", "support_forces", "energies"]] = (),
     ) -> tuple[float, dict[str, float]]: ...
 
 class StepReport:

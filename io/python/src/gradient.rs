@@ -1,24 +1,135 @@
 //! Gradients of runs.
 
 use crate::error::plain;
-use isosheet_adjoint::{AdjointError, AdjointOptions, Branches, OfState, Run, Share};
-use isosheet_dynamics::State;
+use isosheet_adjoint::{
+    AdjointError, AdjointOptions, Branches, Energies, Loss, Moment, OfMoments, OfState, Run, Share,
+    View,
+};
 use isosheet_runs::SceneFamily;
 use isosheet_scenes::SceneFile;
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
+use std::cell::RefCell;
 
 /// The value of a loss with its derivatives by keys.
 pub(crate) type Differentiated<'py> = (f64, Bound<'py, PyDict>);
 
-/// Runs a scene, hands times and positions to `loss`, and goes back over the run.
+/// What a loss gets of each moment of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Quantity {
+    Positions,
+    Velocities,
+    SupportForces,
+    Energies,
+}
+
+impl Quantity {
+    /// By the name that `also` has for it.
+    ///
+    /// # Errors
+    /// A `ValueError` that lists the names.
+    pub(crate) fn named(name: &str) -> PyResult<Self> {
+        let others = [Self::Velocities, Self::SupportForces, Self::Energies];
+        others
+            .into_iter()
+            .find(|own| own.name() == name)
+            .ok_or_else(|| {
+                let names = others.map(|own| format!("{:?}", own.name())).join(", ");
+                PyValueError::new_err(format!("also has {name:?}; give some of {names}"))
+            })
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Positions => "positions",
+            Self::Velocities => "velocities",
+            Self::SupportForces => "support_forces",
+            Self::Energies => "energies",
+        }
+    }
+
+    fn view(self) -> View {
+        match self {
+            Self::Positions | Self::Velocities => View::State,
+            Self::SupportForces | Self::Energies => View::All,
+        }
+    }
+
+    /// Its numbers at a moment.
+    fn numbers(self, moment: &Moment<'_>) -> Vec<f64> {
+        match self {
+            Self::Positions => moment.state.x.clone(),
+            Self::Velocities => moment.state.v.clone(),
+            Self::SupportForces => moment.support_forces.as_flattened().to_vec(),
+            Self::Energies => {
+                let Energies {
+                    kinetic,
+                    potentials,
+                } = moment.energies;
+                vec![*kinetic, potentials.iter().sum()]
+            }
+        }
+    }
+
+    /// The shape of these numbers, with so many moments and vertices.
+    fn shape(self, moments: usize, vertices: usize) -> Vec<usize> {
+        match self {
+            Self::Energies => vec![moments, 2],
+            _ => vec![moments, vertices, 3],
+        }
+    }
+
+    /// Adds derivatives by its numbers at a moment to a share.
+    fn add(self, of: &[f64], moment: &Moment<'_>, share: &mut Share) {
+        match self {
+            Self::Positions => share.of.x.copy_from_slice(of),
+            Self::Velocities => share.of.v.copy_from_slice(of),
+            Self::SupportForces => share.of_forces = of.as_chunks::<3>().0.to_vec(),
+            Self::Energies => {
+                share.of_energies = Energies {
+                    kinetic: of[0],
+                    potentials: vec![of[1]; moment.energies.potentials.len()],
+                }
+            }
+        }
+    }
+}
+
+/// A loss that Python has differentiated by some quantities: of each one the derivatives at all moments.
+struct Derivatives<'a> {
+    quantities: &'a [Quantity],
+    of: Vec<Vec<f64>>,
+    moments: usize,
+    view: View,
+}
+
+impl Loss for Derivatives<'_> {
+    fn share(&self, n: usize, moment: &Moment<'_>) -> Option<Share> {
+        let mut share = Share::of_state(0.0, OfState::zeros(moment.state.x.len()));
+        let mut is_zero = true;
+        for (quantity, of) in self.quantities.iter().zip(&self.of) {
+            let width = of.len() / self.moments;
+            let own = &of[n * width..(n + 1) * width];
+            is_zero &= own.iter().all(|slope| *slope == 0.0);
+            quantity.add(own, moment, &mut share);
+        }
+        (!is_zero).then_some(share)
+    }
+
+    fn view(&self, _n: usize) -> View {
+        self.view
+    }
+}
+
+/// Runs a scene, hands times and quantities to `loss`, and goes back over the run.
 pub(crate) fn gradient<'py>(
     py: Python<'py>,
     file: &SceneFile,
     loss: &Bound<'py, PyAny>,
     of: Vec<String>,
+    also: &[Quantity],
     branches: Branches,
 ) -> PyResult<Differentiated<'py>> {
     let text = file.text();
@@ -32,28 +143,48 @@ pub(crate) fn gradient<'py>(
     };
     let failed = |e: AdjointError| plain(py, &e);
     let run = Run::record(&family, &values, plan, options).map_err(failed)?;
-    let (times, shape, positions) = arrays(py, run.states())?;
-    let (value, slopes): (f64, PyReadonlyArray3<'_, f64>) =
-        loss.call1((times, positions))?.extract()?;
-    let slopes = slopes.as_array();
-    if slopes.shape() != shape {
+    let quantities: Vec<Quantity> = [Quantity::Positions].iter().chain(also).copied().collect();
+    let needs_all = quantities.iter().any(|own| own.view() == View::All);
+    let view = if needs_all { View::All } else { View::State };
+    let seen = seen(&run, &quantities, view).map_err(failed)?;
+    let (moments, vertices) = (run.states().len(), run.states()[0].x.len() / 3);
+    let times = run.states().iter().map(|state| state.t).collect();
+    let mut arguments = vec![PyArray1::from_vec(py, times).into_any()];
+    for (quantity, numbers) in quantities.iter().zip(seen) {
+        let array = PyArray1::from_vec(py, numbers);
+        arguments.push(array.reshape(quantity.shape(moments, vertices))?.into_any());
+    }
+    let returned = loss.call1(PyTuple::new(py, arguments)?)?;
+    let returned: Bound<'py, PyTuple> = returned.cast_into()?;
+    if returned.len() != 1 + quantities.len() {
+        let (found, expected) = (returned.len(), 1 + quantities.len());
         let message = format!(
-            "the derivatives have the shape {:?}, and the positions {shape:?}",
-            slopes.shape()
+            "the loss returns {found} values, and is to return {expected}: a number, and its \
+             derivatives by each array"
         );
         return Err(PyValueError::new_err(message));
     }
-    let slopes: Vec<f64> = slopes.iter().copied().collect();
-    let width = 3 * shape[1];
-    let share = |n: usize, state: &State| {
-        let own = &slopes[n * width..(n + 1) * width];
-        let mut of = OfState::zeros(state.x.len());
-        of.x.copy_from_slice(own);
-        own.iter()
-            .any(|slope| *slope != 0.0)
-            .then_some(Share::of_state(0.0, of))
+    let value: f64 = returned.get_item(0)?.extract()?;
+    let mut slopes = Vec::new();
+    for (k, quantity) in quantities.iter().enumerate() {
+        let own: PyReadonlyArrayDyn<'_, f64> = returned.get_item(1 + k)?.extract()?;
+        let (own, expected) = (own.as_array(), quantity.shape(moments, vertices));
+        if own.shape() != expected {
+            let found = own.shape();
+            let name = quantity.name();
+            let message =
+                format!("the derivatives by {name} have the shape {found:?}, and not {expected:?}");
+            return Err(PyValueError::new_err(message));
+        }
+        slopes.push(own.iter().copied().collect());
+    }
+    let derivatives = Derivatives {
+        quantities: &quantities,
+        of: slopes,
+        moments,
+        view,
     };
-    let gradient = run.gradient(&share).map_err(failed)?;
+    let gradient = run.gradient(&derivatives).map_err(failed)?;
     let by_keys = PyDict::new(py);
     for (key, slope) in family.keys().iter().zip(&gradient.of_numbers) {
         by_keys.set_item(key, slope)?;
@@ -61,20 +192,24 @@ pub(crate) fn gradient<'py>(
     Ok((value, by_keys))
 }
 
-/// Times (T), the shape (T, V, 3), and positions of it.
-#[expect(clippy::type_complexity, reason = "two arrays and their shape")]
-fn arrays<'py>(
-    py: Python<'py>,
-    states: &[State],
-) -> PyResult<(
-    Bound<'py, PyArray1<f64>>,
-    [usize; 3],
-    Bound<'py, PyArray3<f64>>,
-)> {
-    let times: Vec<f64> = states.iter().map(|state| state.t).collect();
-    let width = states.first().map_or(0, |state| state.x.len());
-    let shape = [states.len(), width / 3, 3];
-    let all: Vec<f64> = states.iter().flat_map(|state| &state.x).copied().collect();
-    let positions = PyArray1::from_vec(py, all).reshape(shape)?;
-    Ok((PyArray1::from_vec(py, times), shape, positions))
+/// The quantities at all moments of a run, one list for each.
+fn seen(run: &Run<'_>, quantities: &[Quantity], view: View) -> Result<Vec<Vec<f64>>, AdjointError> {
+    let all = RefCell::new(vec![Vec::new(); quantities.len()]);
+    let add = |moment: &Moment<'_>| {
+        for (quantity, list) in quantities.iter().zip(all.borrow_mut().iter_mut()) {
+            list.extend(quantity.numbers(moment));
+        }
+        None
+    };
+    match view {
+        View::All => run.value(&OfMoments(|_: usize, moment: &Moment<'_>| add(moment)))?,
+        View::State => run.value(&|_: usize, state: &_| {
+            add(&Moment {
+                state,
+                support_forces: &[],
+                energies: &Energies::default(),
+            })
+        })?,
+    };
+    Ok(all.into_inner())
 }

@@ -1,7 +1,7 @@
 //! Scenes.
 
 use crate::error::{of_file, of_run};
-use crate::gradient::{Differentiated, gradient};
+use crate::gradient::{Differentiated, Quantity, gradient};
 use crate::mesh::Mesh;
 use crate::recorded::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
@@ -242,18 +242,24 @@ impl Scene {
     /// and a dictionary with its derivatives by the keys. What has no derivative raises `Error`, which names
     /// it with its time, or counts as constant with ``branches="pass by"``.
     ///
+    /// The loss gets what ``also`` names as further arguments, and returns its derivatives by them, too:
+    /// ``"velocities"`` (T, V, 3) in m/s, ``"support_forces"`` (T, V, 3), the force of supports on each vertex
+    /// in N, zero at the start, and ``"energies"`` (T, 2), the kinetic and the potential energy without
+    /// contact in J.
+    ///
     ///     >>> def height(times, positions):
     ///     ...     slopes = numpy.zeros_like(positions)
     ///     ...     slopes[-1, 3, 2] = 1.0
     ///     ...     return positions[-1, 3, 2], slopes
     ///     >>> value, slopes = scene.gradient(height, of=["sheet.density", "forces.gravity[2]"])
-    #[pyo3(signature = (loss, of, branches = "refuse"))]
+    #[pyo3(signature = (loss, of, branches = "refuse", also = Vec::new()))]
     fn gradient<'py>(
         &self,
         py: Python<'py>,
         loss: &Bound<'py, PyAny>,
         of: Vec<String>,
         branches: &str,
+        also: Vec<String>,
     ) -> PyResult<Differentiated<'py>> {
         let branches = match branches {
             "refuse" => Branches::Refuse,
@@ -263,7 +269,8 @@ impl Scene {
                 return Err(PyValueError::new_err(message));
             }
         };
-        gradient(py, &self.file, loss, of, branches)
+        let also: PyResult<Vec<Quantity>> = also.iter().map(|name| Quantity::named(name)).collect();
+        gradient(py, &self.file, loss, of, &also?, branches)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

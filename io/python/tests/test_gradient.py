@@ -45,3 +45,41 @@ def test_what_cannot_be_differentiated_is_refused():
         scene().gradient(height, of=KEYS, branches="no")
     with pytest.raises(ZeroDivisionError):
         scene().gradient(lambda t, x: 1 / 0, of=KEYS)
+
+
+def test_a_loss_of_velocities_forces_and_energies():
+    def loss(times, positions, velocities, forces, energies):
+        slopes = [numpy.zeros_like(own) for own in (positions, velocities, forces, energies)]
+        slopes[1][-1, 3, 2], slopes[2][:, :, 2], slopes[3][-1] = 1.0, 0.1, (2.0, 3.0)
+        value = velocities[-1, 3, 2] + 0.1 * forces[..., 2].sum() + energies[-1] @ (2.0, 3.0)
+        return value, *slopes
+
+    also = ["velocities", "support_forces", "energies"]
+    value, slopes = scene().gradient(loss, of=KEYS, also=also)
+    for key in KEYS:
+        at = scene()[key]
+        h = 1e-4 * abs(at)
+        up, down = (scene({key: at + s * h}).gradient(loss, of=[], also=also)[0] for s in (1, -1))
+        assert slopes[key] == pytest.approx((up - down) / (2 * h), rel=1e-4)
+
+
+def test_the_forces_of_supports_carry_the_weight_at_rest():
+    still = scene({"method.integrator": "static", "stop.time": 1.0})
+
+    def lifted(times, positions, forces):
+        slopes = numpy.zeros_like(forces)
+        slopes[-1, :, 2] = 1.0
+        return forces[-1, :, 2].sum(), numpy.zeros_like(positions), slopes
+
+    value, slopes = still.gradient(lifted, of=["forces.gravity[2]"], also=["support_forces"])
+    mass = -value / scene()["forces.gravity[2]"]
+    assert mass > 0.0 and slopes["forces.gravity[2]"] == pytest.approx(-mass, rel=1e-6)
+
+
+def test_what_a_loss_gets_and_returns_is_checked():
+    with pytest.raises(ValueError, match="velocities"):
+        scene().gradient(height, of=KEYS, also=["speed"])
+    with pytest.raises(ValueError, match="returns 2 values"):
+        scene().gradient(lambda t, x, v: (0.0, x), of=KEYS, also=["velocities"])
+    with pytest.raises(ValueError, match="by energies"):
+        scene().gradient(lambda t, x, e: (0.0, 0 * x, e[:, 0]), of=KEYS, also=["energies"])
