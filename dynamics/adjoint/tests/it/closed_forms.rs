@@ -1,23 +1,9 @@
 //! Gradients beside closed forms.
 
-use crate::support::{as_meshed, exact};
-use isosheet_adjoint::{AdjointOptions, Plan, Run, Scene, SceneError, coordinate, support_force};
-use isosheet_dynamics::{Material, Method, SheetModel, State};
-use isosheet_mesh::{Sheet, generate};
-
-pub(crate) const LENGTH: f64 = 0.3;
-
-pub(crate) fn at_rest() -> Plan {
-    Plan::steps(Method::Equilibrium(exact()), 1.0, 1)
-}
-
-/// A strip that is clamped at its left end, with a width of a tenth of its length.
-pub(crate) fn strip(cells: usize) -> Result<Sheet, SceneError> {
-    // The clamp is a column of faces before the strip.
-    let cell = LENGTH / cells as f64;
-    let grid = generate::anisotropic_grid(cells + 1, 2, LENGTH + cell, 0.1 * LENGTH)?;
-    Ok(grid.map_positions(|[x, y, z]| [x - cell, y, z])?)
-}
+use crate::problems::{LENGTH, as_meshed, at_rest, strip};
+use isosheet_adjoint::{AdjointOptions, Run, Scene, SceneError, coordinate, support_force};
+use isosheet_dynamics::{Material, SheetModel, State};
+use isosheet_mesh::generate;
 
 /// The tip of the heavy elastica: of a strip of the weight `w` per length and the bending stiffness `B` of
 /// its width it is a function of `Gamma = w L^3 / B` alone, `-L Gamma / 8` for small sags.

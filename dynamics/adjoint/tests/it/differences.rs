@@ -1,6 +1,7 @@
 //! Gradients of runs without contact.
 
-use crate::support::{as_meshed, bdf2, checked, exact};
+use crate::problems::{as_meshed, exact};
+use crate::support::{bdf2, checked};
 use isosheet_adjoint::{Plan, Scene, SceneError, coordinate};
 use isosheet_dynamics::{
     Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Gas, LoadedFaces, Material,

@@ -1,6 +1,7 @@
 //! Losses of the forces of supports and of energies.
 
-use crate::support::{as_meshed, bdf2, checked, exact};
+use crate::problems::{as_meshed, exact};
+use crate::support::{bdf2, checked};
 use isosheet_adjoint::{
     AdjointOptions, Kept, Moment, OfMoments, OfState, Plan, Run, Scene, SceneError, Share, energy,
     support_force,

@@ -5,6 +5,7 @@ mod contact;
 mod differences;
 mod forces;
 mod inverse;
+mod problems;
 mod refusals;
 mod search;
 mod support;

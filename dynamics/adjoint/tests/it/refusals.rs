@@ -1,6 +1,7 @@
 //! What has no derivative, and what cannot be differentiated.
 
-use crate::support::{as_meshed, bdf2};
+use crate::problems::as_meshed;
+use crate::support::bdf2;
 use isosheet_adjoint::{
     AdjointError, AdjointOptions, Branches, Kept, OfState, Plan, Run, Scene, SceneError, Share,
     StepEvent, coordinate,

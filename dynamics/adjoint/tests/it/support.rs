@@ -1,23 +1,8 @@
 //! Gradients beside central differences of whole runs.
 
-use isosheet_adjoint::{AdjointOptions, Family, Gradient, Loss, Plan, Run, Scene};
-use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, State};
-use isosheet_mesh::Sheet;
-
-/// Options whose steps are solved as far as numbers allow.
-pub(crate) fn exact() -> ImplicitOptions {
-    ImplicitOptions {
-        tolerance: Some(1e-13),
-        friction_tolerance: 1e-10,
-        max_friction_updates: 40,
-        ..ImplicitOptions::default()
-    }
-}
-
-/// A scene that starts at rest, where its mesh is.
-pub(crate) fn as_meshed(model: SheetModel, sheet: &Sheet) -> Scene {
-    Scene::new(model, State::at_rest(sheet.positions().to_vec()))
-}
+use crate::problems::exact;
+use isosheet_adjoint::{AdjointOptions, Family, Gradient, Loss, Plan, Run};
+use isosheet_dynamics::Method;
 
 pub(crate) fn bdf2() -> Method {
     Method::Bdf2(exact())

@@ -291,23 +291,24 @@ fn fit(
     // The normal of the clamp, and its direction.
     let n = near.map_or(Vector2::zeros(), |near| near.along);
     let s = Vector2::new(-n.y, n.x);
-    let at_point = |at: Vector2<f64>, k: usize| {
+    let at_point = |at: Vector2<f64>| {
         let p = at / size;
         let (z, s) = (n.dot(&p), s.dot(&p));
         let bend = [p.x * p.x, p.x * p.y, bent(p) * p.y * p.y];
-        weight(at)
-            * [
-                1.0,
-                p.x,
-                p.y,
-                bend[0],
-                bend[1],
-                bend[2],
-                z.powi(3),
-                z * z * s,
-            ][k]
+        let row = [
+            1.0,
+            p.x,
+            p.y,
+            bend[0],
+            bend[1],
+            bend[2],
+            z.powi(3),
+            z * z * s,
+        ];
+        let weight = weight(at);
+        row.map(|value| weight * value)
     };
-    let at_clamp = |Known { at, along: d, .. }: &Known, k: usize| {
+    let at_clamp = |Known { at, along: d, .. }: &Known| {
         let p = at / size;
         let (z, along) = (n.dot(&p), s.dot(&p));
         let (dz, ds) = (n.dot(d), s.dot(d));
@@ -317,14 +318,13 @@ fn fit(
             2.0 * bent(p) * p.y * d.y,
         ];
         let cubic = [3.0 * z * z * dz, 2.0 * z * dz * along + z * z * ds];
-        weight(*at) * [0.0, d.x, d.y, bend[0], bend[1], bend[2], cubic[0], cubic[1]][k]
+        let row = [0.0, d.x, d.y, bend[0], bend[1], bend[2], cubic[0], cubic[1]];
+        let weight = weight(*at);
+        row.map(|value| weight * value)
     };
-    let rows = DMatrix::from_fn(points.len() + known.len(), count, |i, k| {
-        match points.get(i) {
-            Some((_, at)) => at_point(*at, k),
-            None => at_clamp(&known[i - points.len()], k),
-        }
-    });
+    let of_points = points.iter().map(|(_, at)| at_point(*at));
+    let rows: Vec<[f64; AT_CLAMP]> = of_points.chain(known.iter().map(at_clamp)).collect();
+    let rows = DMatrix::from_fn(rows.len(), count, |i, k| rows[i][k]);
     let svd = rows.svd(true, true);
     if svd.singular_values.min() <= LEAST_SINGULAR {
         return None;

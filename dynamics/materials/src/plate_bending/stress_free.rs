@@ -10,7 +10,6 @@ use crate::potential::At;
 use crate::vectors::point as position;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
-use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -148,13 +147,21 @@ impl StressFreeCurvature {
         let at_edges = ends.zip(0..).map(|(ends, k)| (ends, (List::Edges, k)));
         let at_pairs = pairs.iter().zip(0..);
         let at_pairs = at_pairs.map(|((pair, _), k)| (*pair, (List::Pairs, k)));
-        let places: BTreeMap<[VertexId; 2], (List, u32)> = at_edges.chain(at_pairs).collect();
+        // Of each vertex the blocks whose rows belong to it.
+        let mut places = vec![Vec::new(); topology.vertex_count()];
+        for ([v, w], place) in at_edges.chain(at_pairs) {
+            places[v.index()].push((w, place));
+        }
+        let find = |v: VertexId, w: VertexId| {
+            let mut own = places[v.index()].iter();
+            own.find(|(other, _)| *other == w).map(|(_, place)| *place)
+        };
         let slot = |v: VertexId, w: VertexId| {
-            let (place, rows) = match places.get(&[v, w]) {
+            let (place, rows) = match find(v, w) {
                 Some(place) => (place, Rows::First),
-                None => (&places[&[w, v]], Rows::Second),
+                None => (find(w, v).expect("a block of the pair"), Rows::Second),
             };
-            let (list, index) = *place;
+            let (list, index) = place;
             Slot { list, index, rows }
         };
         let counts = [topology.vertex_count(), edges.len(), pairs.len()];
