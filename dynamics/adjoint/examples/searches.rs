@@ -11,7 +11,7 @@ use isosheet_adjoint::{
     AdjointOptions, Family, Loss, Plan, Run, SceneError, coordinate, squared_distances,
 };
 use problems::{TIP, at_rest, by_clamp, by_curls, by_heights, by_rigidity, squared_heights};
-use search::{lead_by_gradients, minimise, solve};
+use search::{Found, lead_by_gradients, minimise, solve};
 
 /// The part of a size over which differences of runs are taken.
 const DIFFERENCE: f64 = 1e-6;
@@ -68,10 +68,9 @@ fn minimum(
     (scale, goal): (f64, f64),
 ) {
     let plan = at_rest();
-    let mut least = f64::INFINITY;
-    let mut counted = |losses: &[f64]| {
-        least = losses.iter().copied().fold(f64::INFINITY, f64::min);
-        format!("loss {least:.1e}")
+    let told = |found: &Found| {
+        let least = found.losses.iter().copied().fold(f64::INFINITY, f64::min);
+        format!("loss {least:.1e}, first number {}", found.numbers[0])
     };
     let begin = ProcessTime::now();
     let found = minimise(
@@ -81,13 +80,7 @@ fn minimum(
         40,
         goal,
     );
-    report(
-        name,
-        "gradients",
-        begin,
-        found.losses.len(),
-        &counted(&found.losses),
-    );
+    report(name, "gradients", begin, found.losses.len(), &told(&found));
     let mut runs = 0;
     let begin = ProcessTime::now();
     let by_differences = |numbers: &[f64]| {
@@ -103,7 +96,7 @@ fn minimum(
         Some((here, slopes?))
     };
     let found = minimise(by_differences, start, scale, 40, goal);
-    report(name, "differences", begin, runs, &counted(&found.losses));
+    report(name, "differences", begin, runs, &told(&found));
 }
 
 fn main() -> Result<(), SceneError> {

@@ -23,7 +23,8 @@ pub(crate) trait System {
 }
 
 /// Solves `A z = b` until the preconditioned residual is a part `tolerance` of the
-/// preconditioned right-hand side, in so many iterations at most. Sizes are measured with `weights`.
+/// preconditioned right-hand side, or round-off hides it, in so many iterations at most. Sizes are measured
+/// with `weights`.
 pub(crate) fn solve(
     system: &mut impl System,
     b: &[f64],
@@ -43,6 +44,7 @@ pub(crate) fn solve(
     z.copy_from_slice(&rhs);
     let mut iterations = 0;
     let mut image = vec![0.0; n];
+    let mut last = f64::INFINITY;
     loop {
         system.apply(z, &mut image);
         let mut r: Vec<f64> = b.iter().zip(&image).map(|(b, i)| b - i).collect();
@@ -53,7 +55,10 @@ pub(crate) fn solve(
         } else {
             0.0
         };
-        if size <= goal || iterations >= most || !size.is_finite() {
+        // A cycle that did not halve what was left ran into round-off.
+        let is_stuck = size > 0.5 * last;
+        last = size;
+        if size <= goal || iterations >= most || is_stuck || !size.is_finite() {
             let residual = relative;
             return Solved {
                 residual,
