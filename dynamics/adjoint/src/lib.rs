@@ -1,6 +1,6 @@
 //! Gradients of runs: how a number that depends on positions, velocities, forces of supports and energies at
-//! chosen times, a *loss*, changes with whatever a scene says, by the discrete adjoint. A gradient costs about as much as the run,
-//! and a little more for each parameter: two scenes, and evaluations of what the parameter changes.
+//! chosen times, a *loss*, changes with whatever a scene says, by the discrete adjoint. A gradient costs less than
+//! the run, and for each parameter two scenes that are built, and evaluations of what the parameter changes.
 //!
 //! | | |
 //! |---|---|
