@@ -8,7 +8,8 @@ use clap::Args;
 use isosheet_files::{DataError, write_atomically};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::{brief, given};
-use isosheet_runs::{Fit, FitRange, FitRuns, FitTarget, Fitted};
+use isosheet_runs::{Fit, FitError, FitRange, FitRuns, FitTarget, Fitted};
+use isosheet_scenes::SceneFile;
 use std::io::Write;
 use std::num::{NonZero, NonZeroUsize};
 use std::ops::ControlFlow;
@@ -91,11 +92,18 @@ impl FitArgs {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };
+        let write = |scene: &SceneFile| {
+            let text = &scene.text().text;
+            write_atomically(&out, |file| file.write_all(text.as_bytes()))
+                .map_err(|e| Failure::of(Code::Output, &e))
+        };
+        let mut best = None;
         let fitted = fit.run(
             folder.path(),
             self.jobs.unwrap_or(cores),
             &watch,
             &mut |step| {
+                best = step.scene.clone().or(best.take());
                 let values = step.values.iter();
                 let values = values.map(|(key, value)| format!("{key} = {}", brief(*value)));
                 print_progress(format_args!(
@@ -105,10 +113,16 @@ impl FitArgs {
                     brief(step.rms)
                 ));
             },
-        )?;
-        let text = &fitted.scene.text().text;
-        write_atomically(&out, |file| file.write_all(text.as_bytes()))
-            .map_err(|e| Failure::of(Code::Output, &e))?;
+        );
+        let fitted = match (fitted, best) {
+            (Err(FitError::Interrupted), Some(best)) => {
+                write(&best)?;
+                let message = format!("stopped by Ctrl-C; {} has the best values", out.display());
+                return Err(Failure::new(Code::Interrupted, message));
+            }
+            (fitted, _) => fitted?,
+        };
+        write(&fitted.scene)?;
         print_result(format_args!("{}", lines(&fitted)))?;
         let count = counted(fitted.runs, "run", "runs");
         match missed(&fitted) {

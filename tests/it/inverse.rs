@@ -21,9 +21,10 @@ fn solved(family: &dyn Family, start: &[f64], targets: &[Target]) -> (Vec<f64>, 
     let run_of =
         |numbers: &[f64]| Run::record(family, numbers, at_rest(), AdjointOptions::default()).ok();
     let differences = |run: &Run<'_>| {
-        let values = targets
-            .iter()
-            .map(|(vertex, axis, wanted)| run.value(&coordinate(*vertex, *axis, 1)) - wanted);
+        let values = targets.iter().map(|(vertex, axis, wanted)| {
+            let found = run.value(&coordinate(*vertex, *axis, 1));
+            found.expect("a coordinate") - wanted
+        });
         DVector::from_iterator(targets.len(), values)
     };
     let mut numbers = start.to_vec();

@@ -107,6 +107,7 @@ class Scene:
         of: Sequence[str],
         branches: Literal["refuse", "pass by"] = "refuse",
         also: Sequence[Literal["velocities", "support_forces", "energies"]] = (),
+        sizes: Mapping[str, float] = {},
     ) -> tuple[float, dict[str, float]]: ...
 
 class StepReport:

@@ -2,8 +2,7 @@
 
 use crate::error::plain;
 use isosheet_adjoint::{
-    AdjointError, AdjointOptions, Branches, Energies, Loss, Moment, OfMoments, OfState, Run, Share,
-    View,
+    AdjointError, AdjointOptions, Energies, Loss, Moment, OfMoments, OfState, Run, Share, View,
 };
 use isosheet_runs::SceneFamily;
 use isosheet_scenes::SceneFile;
@@ -130,17 +129,13 @@ pub(crate) fn gradient<'py>(
     loss: &Bound<'py, PyAny>,
     of: Vec<String>,
     also: &[Quantity],
-    branches: Branches,
+    options: AdjointOptions,
 ) -> PyResult<Differentiated<'py>> {
     let text = file.text();
     let family = SceneFamily::of_text(&text.text, &text.path, Vec::new(), of);
     let family = family.map_err(|e| plain(py, &e))?;
     let plan = family.plan().map_err(|e| plain(py, &e))?;
     let values = family.values().map_err(|e| plain(py, &e))?;
-    let options = AdjointOptions {
-        branches,
-        ..AdjointOptions::default()
-    };
     let failed = |e: AdjointError| plain(py, &e);
     let run = Run::record(&family, &values, plan, options).map_err(failed)?;
     let quantities: Vec<Quantity> = [Quantity::Positions].iter().chain(also).copied().collect();

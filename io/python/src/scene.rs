@@ -5,13 +5,14 @@ use crate::gradient::{Differentiated, Quantity, gradient};
 use crate::mesh::Mesh;
 use crate::recorded::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
-use isosheet_adjoint::Branches;
+use isosheet_adjoint::{AdjointOptions, Branches};
 use isosheet_runs as run;
 use isosheet_runs::{StepPart, Tick, Watch};
 use isosheet_scenes::{Key, SceneFile, SceneFileError, StartingPoint};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -247,12 +248,15 @@ impl Scene {
     /// in N, zero at the start, and ``"energies"`` (T, 2), the kinetic and the potential energy without
     /// contact in J.
     ///
+    /// ``sizes`` has the sizes of keys whose values say little about them, such as places of obstacles: by how
+    /// much each has to change to make another scene. Of a place that is the distance at which contact acts.
+    ///
     ///     >>> def height(times, positions):
     ///     ...     slopes = numpy.zeros_like(positions)
     ///     ...     slopes[-1, 3, 2] = 1.0
     ///     ...     return positions[-1, 3, 2], slopes
     ///     >>> value, slopes = scene.gradient(height, of=["sheet.density", "forces.gravity[2]"])
-    #[pyo3(signature = (loss, of, branches = "refuse", also = Vec::new()))]
+    #[pyo3(signature = (loss, of, branches = "refuse", also = Vec::new(), sizes = HashMap::new()))]
     fn gradient<'py>(
         &self,
         py: Python<'py>,
@@ -260,6 +264,7 @@ impl Scene {
         of: Vec<String>,
         branches: &str,
         also: Vec<String>,
+        sizes: HashMap<String, f64>,
     ) -> PyResult<Differentiated<'py>> {
         let branches = match branches {
             "refuse" => Branches::Refuse,
@@ -270,7 +275,22 @@ impl Scene {
             }
         };
         let also: PyResult<Vec<Quantity>> = also.iter().map(|name| Quantity::named(name)).collect();
-        gradient(py, &self.file, loss, of, &also?, branches)
+        if let Some((key, size)) = sizes
+            .iter()
+            .find(|(key, size)| !of.contains(key) || !(size.is_finite() && **size > 0.0))
+        {
+            let message = format!(
+                "sizes has {size} for {key:?}; give positive numbers for keys of `of` alone"
+            );
+            return Err(PyValueError::new_err(message));
+        }
+        let size = |key: &String| sizes.get(key).copied().unwrap_or(0.0);
+        let options = AdjointOptions {
+            branches,
+            sizes: of.iter().map(size).collect(),
+            ..AdjointOptions::default()
+        };
+        gradient(py, &self.file, loss, of, &also?, options)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

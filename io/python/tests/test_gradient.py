@@ -77,9 +77,30 @@ def test_the_forces_of_supports_carry_the_weight_at_rest():
 
 
 def test_what_a_loss_gets_and_returns_is_checked():
+    with pytest.raises(ValueError, match="sheet.density"):
+        scene().gradient(height, of=KEYS, sizes={"sheet.density": 1.0})
+    with pytest.raises(ValueError, match="positive"):
+        scene().gradient(height, of=KEYS, sizes={KEYS[0]: 0.0})
     with pytest.raises(ValueError, match="velocities"):
         scene().gradient(height, of=KEYS, also=["speed"])
     with pytest.raises(ValueError, match="returns 2 values"):
         scene().gradient(lambda t, x, v: (0.0, x), of=KEYS, also=["velocities"])
     with pytest.raises(ValueError, match="by energies"):
         scene().gradient(lambda t, x, e: (0.0, 0 * x, e[:, 0]), of=KEYS, also=["energies"])
+
+
+def test_the_size_of_a_place():
+    ball = {"shape": {"sphere": {"radius": 0.05}}, "pose": {"position": [0.1, 0.1, -0.0503]}}
+    edits = {"obstacle": [ball], "contact": {"friction": 0.3}, "stop.time": 0.1}
+    key = "obstacle[0].pose.position[2]"
+
+    def corner(times, positions):
+        slopes = numpy.zeros_like(positions)
+        slopes[-1, 24, 2] = 1.0
+        return positions[-1, 24, 2], slopes
+
+    _, slopes = scene(edits).gradient(corner, of=[key], sizes={key: 1e-4})
+    up, down = (
+        scene({**edits, key: -0.0503 + s}).gradient(corner, of=[])[0] for s in (1e-7, -1e-7)
+    )
+    assert slopes[key] == pytest.approx((up - down) / 2e-7, rel=1e-2)

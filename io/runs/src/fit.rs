@@ -66,6 +66,8 @@ pub struct FitProgress {
     /// The root of the mean square of the differences: in the unit of the targets, or by their standard
     /// deviations.
     pub rms: f64,
+    /// The scene with these values; none at the start of the search.
+    pub scene: Option<SceneFile>,
 }
 
 /// What was found of a key.
@@ -402,6 +404,10 @@ impl Fit {
                     .map(|(r, part)| (r.key().to_owned(), r.value(*part)))
                     .collect(),
                 rms: rms(&point.differences),
+                scene: match runs.get() {
+                    1 => None,
+                    _ => self.scene(&point.at).ok(),
+                },
             });
         };
         let minimum = least_squares(start.clone(), &mut evaluate, &mut tell)?;

@@ -1,9 +1,13 @@
 //! `isosheet fit`.
 
 use crate::{code, run, stderr, stdout};
-use isosheet_scenes::SceneFile;
+use isosheet_runs::{Fit, FitError, FitRuns};
+use isosheet_scenes::{Key, SceneFile};
 use std::fs;
+use std::num::NonZero;
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A strip that hangs out of a clamp under its weight.
 const STRIP: &str = "version = 1
@@ -223,4 +227,33 @@ fn wrong_fits_are_refused() {
         assert!(said.contains(says), "{says}: {said}");
     }
     assert!(!dir.join("strip-fit.toml").exists());
+}
+
+/// A search that is ended hands out its best scene; at its start there is none.
+#[test]
+fn a_search_that_is_ended_has_its_best_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("strip.toml");
+    fs::write(&path, STRIP).unwrap();
+    let ranges = vec![format!("{RIGIDITY}=1e-5..1e-2").parse().unwrap()];
+    let targets = vec!["tip=-0.042".parse().unwrap()];
+    let fit = Fit::new(&path, Vec::new(), ranges, targets, FitRuns::Rest).unwrap();
+    let ends = AtomicBool::new(false);
+    let watch = || match ends.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let mut seen = Vec::new();
+    let ended = fit.run(dir.path(), NonZero::<usize>::MIN, &watch, &mut |step| {
+        seen.push(step.clone());
+        ends.store(seen.len() == 3, Ordering::Relaxed);
+    });
+    assert!(matches!(ended, Err(FitError::Interrupted)));
+    let [start, _, last] = &seen[..] else {
+        panic!("{} steps", seen.len());
+    };
+    assert!(start.scene.is_none() && last.rms < start.rms);
+    let scene = last.scene.as_ref().expect("a scene");
+    let key: Key = RIGIDITY.parse().unwrap();
+    assert_eq!(scene.number(&key), Some(last.values[0].1));
 }
