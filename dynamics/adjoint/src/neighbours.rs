@@ -33,4 +33,12 @@ impl Neighbours {
             distance,
         }
     }
+
+    /// By which part the lengths at rest of the elastic sheets of the two differ at a time.
+    pub(crate) fn rest_difference(&self, t: f64) -> f64 {
+        let [up, down] = self.simulations.each_ref().map(Simulation::model);
+        let sheets = up.elastic_sheet().zip(down.elastic_sheet());
+        let difference = sheets.and_then(|(up, down)| up.rest_difference(down, t));
+        difference.unwrap_or(0.0)
+    }
 }

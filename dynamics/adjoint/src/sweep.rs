@@ -14,9 +14,9 @@ use crate::rows::Rows;
 use crate::system::{Request, Solution, solve};
 use isosheet_dynamics::Simulation;
 use isosheet_dynamics::sensitivity::{AcceptedStep, FrictionLag, OfState, ReachedPairs, StepKind};
+use isosheet_materials::NoDerivative;
 use isosheet_materials::potential::Memories;
 use isosheet_materials::vectors::dot;
-use isosheet_materials::{Difference, NoDerivative};
 use isosheet_model::{PINNED, SheetModel, State};
 use std::sync::Arc;
 
@@ -216,15 +216,10 @@ impl<'o> Sweep<'o> {
             self.refuse(t, source)?;
         }
         // Of pinned vertices what they pull at others by.
-        // (What motions of pins do to the residual is in that of the neighbours.)
-        let mut pulls = image;
-        for v in model.moving_pins() {
-            pulls[3 * v..3 * v + 3].fill(0.0);
-        }
         for (v, i) in model.free_index().iter().enumerate() {
             if *i == PINNED {
                 for k in 3 * v..3 * v + 3 {
-                    pinned[k] += of_x[k] - pulls[k];
+                    pinned[k] += of_x[k] - image[k];
                 }
             }
         }
@@ -273,46 +268,23 @@ impl<'o> Sweep<'o> {
         let t = step.end.t;
         for neighbours in &mut self.neighbours {
             let mut ends = [0.0; 2];
-            // Where pins are at other places, all that is there is another force.
-            let [up, down] = neighbours.simulations.each_ref().map(|simulation| {
-                let mut x = level.x.to_vec();
-                simulation.model().place_pins(t, &mut x);
-                x
-            });
-            let differences: &[Difference] = match up == down {
-                true => &neighbours.differences,
-                false => &[],
-            };
             for (end, simulation) in ends.iter_mut().zip(&mut neighbours.simulations) {
                 let model = Arc::clone(simulation.model());
-                let placed = |x: &[f64]| {
-                    let mut x = x.to_vec();
-                    model.place_pins(t, &mut x);
-                    x
-                };
-                let x = placed(level.x);
-                let lagged = match level.lag {
-                    FrictionLag::Start => Vec::new(),
-                    FrictionLag::Places(y) => placed(y),
-                };
-                let lag = match level.lag {
-                    FrictionLag::Start => FrictionLag::Start,
-                    FrictionLag::Places(_) => FrictionLag::Places(&lagged),
-                };
                 let mut equations = simulation
                     .step_equations()
                     .ok_or(AdjointError::Method { number: 0 })?;
-                let begun = equations.begin_like(step, lag, &x, pairs);
+                let begun = equations.begin_like(step, level.lag, level.x, pairs);
                 begun.map_err(|source| AdjointError::Equations { t, source })?;
-                let mut residual = vec![0.0; x.len()];
-                equations.residual_of(differences, step, &x, &mut residual);
+                let mut residual = vec![0.0; level.x.len()];
+                let differences = &neighbours.differences;
+                equations.residual_of(differences, step, level.x, &mut residual);
                 *end = dot(w, &residual);
                 if !multipliers.is_empty() {
-                    let values = Rows::values(&model, step, &x);
+                    let values = Rows::values(&model, step, level.x);
                     *end += dot(multipliers, &values);
                 }
                 if !of_forces.is_empty() {
-                    *end -= dot(of_forces, &Rows::forces(&model, step, &x));
+                    *end -= dot(of_forces, &Rows::forces(&model, step, level.x));
                 }
             }
             let slope = (ends[0] - ends[1]) / neighbours.distance;

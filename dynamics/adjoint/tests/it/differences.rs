@@ -296,6 +296,30 @@ fn another_rest_shape() {
     checked("another shape", &family, &[0.5, 2.0], &plan, &loss, 1e-6);
 }
 
+/// Coordinates of the mesh of paper, which is stiff in its plane, and under its weight strained by 1e-7.
+#[test]
+fn another_rest_shape_of_paper() {
+    let family = |p: &[f64]| -> Result<Scene, SceneError> {
+        let grid = generate::anisotropic_grid(8, 4, 0.2, 0.1)?;
+        let mut x = grid.positions().to_vec();
+        x[3 * 44] = p[0];
+        x[3 * 20 + 1] += p[1];
+        let faces = grid.topology().faces().iter().map(|f| f.map(|v| v.0));
+        let sheet = Sheet::new(x, &faces.collect::<Vec<_>>())?;
+        let clamp = grid.vertices_where(|[x, _, _]| x < 1e-9);
+        let model = SheetModel::of_material(&sheet, &Material::office_paper())
+            .build()?
+            .with_pins(&clamp)?
+            .with_damping(3.0)?
+            .with_gravity();
+        Ok(as_meshed(model, &sheet))
+    };
+    let loss = coordinate(44, 2, 10);
+    let plan = Plan::steps(bdf2(), 1e-2, 10);
+    // The second one is a twentieth of the first one.
+    checked("paper", &family, &[0.2, 1e-4], &plan, &loss, 1e-3);
+}
+
 /// A film that swells. Its steps end where the round-off of the energy of its strain hides what is left of
 /// the forces.
 #[test]

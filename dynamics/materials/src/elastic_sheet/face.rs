@@ -237,6 +237,17 @@ impl Face {
         }
     }
 
+    /// The largest difference of the lengths of its edges at rest from those of another face at a time, as a
+    /// part.
+    pub(super) fn rest_difference(&self, other: &Self, t: f64) -> f64 {
+        let squares = [self, other].map(|face| {
+            let growth = face.swelling.growth(t);
+            face.squared_lengths.map(|squared| growth * squared)
+        });
+        let parts = (0..3).map(|k| (0.5 * (squares[0][k] / squares[1][k] - 1.0)).abs());
+        parts.fold(0.0, f64::max)
+    }
+
     pub(super) fn area(&self) -> f64 {
         self.area
     }

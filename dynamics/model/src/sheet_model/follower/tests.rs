@@ -129,11 +129,23 @@ fn the_term_follows_the_load() {
         let slope = (up[i] - down[i]) / 2e-5;
         assert!((slope - p).abs() < 1e-6, "{i}: {slope} {p}");
     }
-    assert!(term.renew(iterate(&end, &memories), 0.05));
+    assert!(term.renew(
+        iterate(&end, &memories),
+        Lagging {
+            friction: 0.05,
+            loads: 0.05
+        }
+    ));
     let mut exact = vec![0.0; x.len()];
     model.add_applied_force(0.02, &end, &[], &mut exact);
     let found = gradient(&mut *term, &end);
     let error = found.iter().zip(&exact).map(|(g, f)| (g + f).abs());
     assert!(error.fold(0.0, f64::max) < 1e-12);
-    assert!(!term.renew(iterate(&end, &memories), 0.05));
+    assert!(!term.renew(
+        iterate(&end, &memories),
+        Lagging {
+            friction: 0.05,
+            loads: 0.05
+        }
+    ));
 }
