@@ -69,6 +69,16 @@ impl Advice for SceneFamilyError {
     }
 }
 
+/// The tables of a scene that say how it is run and what is told of it.
+const WITHOUT_DERIVATIVE: [&str; 4] = ["method", "stop", "output", "measure"];
+
+fn no_number(key: &str) -> DataError {
+    DataError::new(
+        format!("`{key}` has no number in the scene"),
+        "name a key that has one, such as `forces.gravity[2]`; give those that are left out their value first",
+    )
+}
+
 impl SceneFamily {
     /// The scene of a file, with edits of the form `key=value`, as a function of some keys.
     ///
@@ -106,6 +116,16 @@ impl SceneFamily {
             let remedy = "differentiate the runs before and after it";
             return Err(DataError::new(message, remedy).into());
         }
+        let stop = &file.scene().stop;
+        let ends = [
+            ("rest", stop.rest.is_some()),
+            ("support_force", stop.support_force.is_some()),
+        ];
+        if let Some((name, _)) = ends.into_iter().find(|(_, is_given)| *is_given) {
+            let message = format!("the scene ends by `stop.{name}`, and its end has no derivative");
+            let remedy = "leave it out, and end the scene at a time by `stop.time`";
+            return Err(DataError::new(message, remedy).into());
+        }
         family.values()?;
         Ok(family)
     }
@@ -121,11 +141,18 @@ impl SceneFamily {
     /// [`SceneFamilyError::Other`] if a key has no number.
     pub fn values(&self) -> Result<Vec<f64>, SceneFamilyError> {
         let file = self.file(&[])?;
-        let number = |key: &String| {
-            let found = key.parse().ok().and_then(|key: Key| file.number(&key));
-            let message = || format!("`{key}` has no number in the scene");
-            let remedy = "name a key that the scene has, such as `sheet.density`";
-            found.ok_or_else(|| DataError::new(message(), remedy).into())
+        let number = |text: &String| {
+            let key: Key = text.parse().map_err(|_| no_number(text))?;
+            let is_of_run = |table: &&&str| table.parse().is_ok_and(|table| key.is_within(&table));
+            if let Some(table) = WITHOUT_DERIVATIVE.iter().find(is_of_run) {
+                let message = format!("`{key}` has no derivative");
+                let remedy = match *table {
+                    "method" | "stop" => "steps and end are the same for all values of other keys",
+                    _ => "name a key of the sheet, of what holds it, or of what acts on it",
+                };
+                return Err(DataError::new(message, remedy).into());
+            }
+            Ok(file.number(&key).ok_or_else(|| no_number(text))?)
         };
         self.keys.iter().map(number).collect()
     }
@@ -306,6 +333,25 @@ time = 0.2
         assert!(!passed_by.is_empty());
         for passed in passed_by {
             assert!(passed.what.contains("bodies met"), "{passed:?}");
+        }
+    }
+
+    #[test]
+    fn what_says_how_a_scene_is_run_is_refused() {
+        for key in ["method.step", "stop.time"] {
+            let error = family(&[key]).expect_err("no derivative");
+            assert!(error.to_string().contains("no derivative"), "{error}");
+            assert!(error.advice().is_some());
+        }
+        for end in [
+            "stop.support_force=0.01",
+            "stop.rest={speed=1e-3,duration=0.1}",
+        ] {
+            let edits = vec![end.to_owned()];
+            let keys = vec!["forces.gravity[2]".to_owned()];
+            let path = Path::new("paper.toml");
+            let error = SceneFamily::of_text(TEXT, path, edits, keys).expect_err("an end");
+            assert!(error.to_string().contains("stop."), "{error}");
         }
     }
 
