@@ -5,7 +5,7 @@ use isosheet_dynamics::sensitivity::StepEvent;
 use isosheet_linalg::LinalgError;
 use isosheet_materials::NoDerivative;
 use isosheet_mesh::Advice;
-use isosheet_mesh::wording::brief;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_model::StepError;
 use std::error::Error;
 
@@ -120,6 +120,17 @@ pub enum AdjointError {
         /// Of the plan, from 0.
         number: usize,
     },
+    /// Whoever watches has ended the run or the way back.
+    #[error("interrupted")]
+    Interrupted,
+    /// The value of a loss is not finite.
+    #[error("the loss is {value} after step {step}", value = given(*value))]
+    LossValue {
+        /// Of the plan, 0 at the start.
+        step: usize,
+        /// The value.
+        value: f64,
+    },
     /// A derivative is not finite.
     #[error("a derivative by the state at t = {t} s is not finite", t = brief(*t))]
     NotFinite {
@@ -140,11 +151,13 @@ impl Advice for AdjointError {
             Self::NoDerivative { source, .. } => source.advice(),
             Self::Event { .. } => Some("take shorter steps, or pass it by (`Branches::PassBy`)"),
             Self::Unsolved { .. } | Self::Linalg { .. } => {
-                Some("the state is near a branch: end the run before it, or ask for less accuracy")
+                Some("the state is near a branch, as flat rods are: end the run before it")
             }
             Self::OtherSheet { .. } => {
                 Some("keep mesh and pinned vertices the same for all numbers")
             }
+            Self::Interrupted => None,
+            Self::LossValue { .. } => Some("look at the loss"),
             Self::LossLength { .. } => Some("give three derivatives for each vertex"),
             Self::NotRepeated { .. } => Some("build the same scene each time it is asked for"),
             Self::NotFinite { .. } => Some("look at the loss, and end the run before that time"),

@@ -40,7 +40,7 @@ impl Scene {
 /// same topology and the same pinned vertices.
 ///
 /// A closure is one.
-pub trait Family {
+pub trait Family: Sync {
     /// The scene with these numbers, the same each time.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ pub trait Family {
     fn scene(&self, numbers: &[f64]) -> Result<Scene, SceneError>;
 }
 
-impl<F: Fn(&[f64]) -> Result<Scene, SceneError>> Family for F {
+impl<F: Fn(&[f64]) -> Result<Scene, SceneError> + Sync> Family for F {
     fn scene(&self, numbers: &[f64]) -> Result<Scene, SceneError> {
         self(numbers)
     }

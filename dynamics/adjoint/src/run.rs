@@ -11,8 +11,9 @@ use crate::sweep::Sweep;
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::sensitivity::AcceptedStep;
 use isosheet_dynamics::{Checkpoint, Simulation};
-use isosheet_model::State;
+use isosheet_model::{State, StepError};
 use std::borrow::Cow;
+use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The accepted sub-steps of each step of a part of a plan.
@@ -72,6 +73,22 @@ impl<'f> Run<'f> {
         plan: Plan,
         options: AdjointOptions,
     ) -> Result<Self, AdjointError> {
+        Self::record_watched(family, numbers, plan, options, &mut || {
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// As [`Run::record`]. `watch` is asked before each factorisation, and may end the run.
+    ///
+    /// # Errors
+    /// As [`Run::record`]; [`AdjointError::Interrupted`].
+    pub fn record_watched(
+        family: &'f dyn Family,
+        numbers: &[f64],
+        plan: Plan,
+        options: AdjointOptions,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Self, AdjointError> {
         let mut simulation = simulation(family, numbers, &plan)?;
         let count = plan.steps.len();
         let mut states = vec![simulation.state().clone()];
@@ -88,13 +105,16 @@ impl<'f> Run<'f> {
                 Kept::Between { .. } => Some(simulation.checkpoint()),
             };
             let content = match checkpoint {
-                None => Content::Steps(take(&mut simulation, &plan, first, own, |state| {
-                    states.push(state.clone());
-                })?),
+                None => Content::Steps(take(
+                    (&mut simulation, watch),
+                    &plan,
+                    first,
+                    own,
+                    |state| states.push(state.clone()),
+                )?),
                 Some(checkpoint) => {
                     for number in first..first + own {
-                        let step = simulation.step(plan.steps[number]);
-                        step.map_err(|source| AdjointError::Step { number, source })?;
+                        step(&mut simulation, plan.steps[number], number, watch)?;
                         states.push(simulation.state().clone());
                     }
                     Content::Checkpoint(Box::new(checkpoint))
@@ -145,7 +165,7 @@ impl<'f> Run<'f> {
             let numbers = part.first + 1..=part.first + part.count;
             let is_seen = numbers.clone().any(|n| loss.view(n) == View::All);
             let steps = match is_seen {
-                true => Some(self.steps_of(part)?),
+                true => Some(self.steps_of(part, &mut || ControlFlow::Continue(()))?),
                 false => None,
             };
             for (k, n) in numbers.enumerate() {
@@ -161,9 +181,22 @@ impl<'f> Run<'f> {
     /// # Errors
     /// [`AdjointError`] naming what has no derivative, with the time.
     pub fn gradient(&self, loss: &dyn Loss) -> Result<Gradient, AdjointError> {
+        self.gradient_watched(loss, &mut || ControlFlow::Continue(()))
+    }
+
+    /// As [`Run::gradient`]. `watch` is asked for each number and each sub-step, and may end the way back.
+    ///
+    /// # Errors
+    /// As [`Run::gradient`]; [`AdjointError::Interrupted`].
+    pub fn gradient_watched(
+        &self,
+        loss: &dyn Loss,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Gradient, AdjointError> {
         let base = equations(self.family, &self.numbers, &self.plan, None)?;
         let mut sweep = Sweep::new(base, &self.options);
         for number in 0..self.numbers.len() {
+            ask(watch)?;
             sweep.add_number(self.neighbours(number)?)?;
         }
         let mut value = 0.0;
@@ -176,14 +209,19 @@ impl<'f> Run<'f> {
             let Some(share) = loss.share(n, &seen.moment(state)) else {
                 return Ok(());
             };
+            if !share.value.is_finite() {
+                let value = share.value;
+                return Err(AdjointError::LossValue { step: n, value });
+            }
             value += share.value;
             sweep.add_share(&share, n, state, &seen)
         };
         for part in self.parts.iter().rev() {
-            let steps = self.steps_of(part)?;
+            let steps = self.steps_of(part, watch)?;
             for (k, sub_steps) in steps.iter().enumerate().rev() {
                 add(&mut sweep, part.first + k + 1, sub_steps.last())?;
                 for step in sub_steps.iter().rev() {
+                    ask(watch)?;
                     sweep.step_back(step)?;
                 }
             }
@@ -193,10 +231,16 @@ impl<'f> Run<'f> {
     }
 
     /// The accepted sub-steps of a part: those that are kept, or made again.
-    fn steps_of<'a>(&self, part: &'a Part) -> Result<Cow<'a, Steps>, AdjointError> {
+    fn steps_of<'a>(
+        &self,
+        part: &'a Part,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Cow<'a, Steps>, AdjointError> {
         match &part.content {
             Content::Steps(steps) => Ok(Cow::Borrowed(steps)),
-            Content::Checkpoint(checkpoint) => self.take_again(part, checkpoint).map(Cow::Owned),
+            Content::Checkpoint(checkpoint) => {
+                self.take_again(part, checkpoint, watch).map(Cow::Owned)
+            }
         }
     }
 
@@ -231,14 +275,27 @@ impl<'f> Run<'f> {
     }
 
     /// Makes a part of the run again.
-    fn take_again(&self, part: &Part, checkpoint: &Checkpoint) -> Result<Steps, AdjointError> {
+    fn take_again(
+        &self,
+        part: &Part,
+        checkpoint: &Checkpoint,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Steps, AdjointError> {
         let Scene { model, contact, .. } = scene(self.family, &self.numbers, None)?;
         let mut simulation = Simulation::resume(model, contact, checkpoint.clone())?;
-        let steps = take(&mut simulation, &self.plan, part.first, part.count, |_| {})?;
+        let stepped = (&mut simulation, watch);
+        let steps = take(stepped, &self.plan, part.first, part.count, |_| {})?;
         match simulation.state() == &self.states[part.first + part.count] {
             true => Ok(steps),
             false => Err(AdjointError::NotRepeated { number: part.first }),
         }
+    }
+}
+
+fn ask(watch: &mut dyn FnMut() -> ControlFlow<()>) -> Result<(), AdjointError> {
+    match watch() {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(AdjointError::Interrupted),
     }
 }
 
@@ -291,9 +348,23 @@ fn in_contact(
     })
 }
 
+/// Takes a step.
+fn step(
+    simulation: &mut Simulation,
+    h: f64,
+    number: usize,
+    watch: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<(), AdjointError> {
+    match simulation.step_watched(h, &mut |_| watch()) {
+        Ok(_) => Ok(()),
+        Err(StepError::Interrupted { .. }) => Err(AdjointError::Interrupted),
+        Err(source) => Err(AdjointError::Step { number, source }),
+    }
+}
+
 /// Takes some steps of a plan, and hands each state to `see`.
 fn take(
-    simulation: &mut Simulation,
+    (simulation, watch): (&mut Simulation, &mut dyn FnMut() -> ControlFlow<()>),
     plan: &Plan,
     first: usize,
     count: usize,
@@ -311,8 +382,7 @@ fn take(
     });
     let mut steps = Vec::with_capacity(count);
     for number in first..first + count {
-        let step = simulation.step(plan.steps[number]);
-        step.map_err(|source| AdjointError::Step { number, source })?;
+        step(simulation, plan.steps[number], number, watch)?;
         let own = list(&taken);
         if own.is_empty() {
             return Err(AdjointError::Method { number });

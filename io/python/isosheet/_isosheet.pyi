@@ -104,9 +104,9 @@ class Scene:
     def gradient(
         self,
         loss: Callable[..., tuple[float, *tuple[_Floats, ...]]],
-        of: Sequence[str],
+        of: Sequence[str] | str,
         branches: Literal["refuse", "pass by"] = "refuse",
-        also: Sequence[Literal["velocities", "support_forces", "energies"]] = (),
+        also: Sequence[str] | str = (),
         sizes: Mapping[str, float] = {},
     ) -> tuple[float, dict[str, float]]: ...
 

@@ -1,16 +1,18 @@
 //! Gradients of runs.
 
 use crate::error::plain;
+use crate::scene::Signals;
 use isosheet_adjoint::{
     AdjointError, AdjointOptions, Energies, Loss, Moment, OfMoments, OfState, Run, Share, View,
 };
 use isosheet_runs::SceneFamily;
 use isosheet_scenes::SceneFile;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn};
-use pyo3::exceptions::PyValueError;
+use numpy::{AllowTypeChange, PyArray1, PyArrayLikeDyn, PyArrayMethods};
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::cell::RefCell;
+use std::ffi::CString;
 
 /// The value of a loss with its derivatives by keys.
 pub(crate) type Differentiated<'py> = (f64, Bound<'py, PyDict>);
@@ -136,13 +138,16 @@ pub(crate) fn gradient<'py>(
     let family = family.map_err(|e| plain(py, &e))?;
     let plan = family.plan().map_err(|e| plain(py, &e))?;
     let values = family.values().map_err(|e| plain(py, &e))?;
-    let failed = |e: AdjointError| plain(py, &e);
-    let run = Run::record(&family, &values, plan, options).map_err(failed)?;
+    let mut signals = Signals::default();
+    let watched =
+        py.detach(|| Run::record_watched(&family, &values, plan, options, &mut || signals.ask()));
+    let run = watched.map_err(|e| failed(py, &e, &mut signals))?;
     let quantities: Vec<Quantity> = [Quantity::Positions].iter().chain(also).copied().collect();
     let needs_all = quantities.iter().any(|own| own.view() == View::All);
     let view = if needs_all { View::All } else { View::State };
-    let seen = seen(&run, &quantities, view).map_err(failed)?;
-    let (moments, vertices) = (run.states().len(), run.states()[0].x.len() / 3);
+    let seen = seen(&run, &quantities, view).map_err(|e| failed(py, &e, &mut signals))?;
+    let moments = run.states().len();
+    let vertices = run.states()[0].x.len() / 3;
     let times = run.states().iter().map(|state| state.t).collect();
     let mut arguments = vec![PyArray1::from_vec(py, times).into_any()];
     for (quantity, numbers) in quantities.iter().zip(seen) {
@@ -150,7 +155,7 @@ pub(crate) fn gradient<'py>(
         arguments.push(array.reshape(quantity.shape(moments, vertices))?.into_any());
     }
     let returned = loss.call1(PyTuple::new(py, arguments)?)?;
-    let returned: Bound<'py, PyTuple> = returned.cast_into()?;
+    let returned: Vec<Bound<'py, PyAny>> = returned.try_iter()?.collect::<PyResult<_>>()?;
     if returned.len() != 1 + quantities.len() {
         let (found, expected) = (returned.len(), 1 + quantities.len());
         let message = format!(
@@ -159,14 +164,19 @@ pub(crate) fn gradient<'py>(
         );
         return Err(PyValueError::new_err(message));
     }
-    let value: f64 = returned.get_item(0)?.extract()?;
+    let value: f64 = returned[0].extract()?;
+    if !value.is_finite() {
+        return Err(PyValueError::new_err(format!("the loss is {value}")));
+    }
     let mut slopes = Vec::new();
-    for (k, quantity) in quantities.iter().enumerate() {
-        let own: PyReadonlyArrayDyn<'_, f64> = returned.get_item(1 + k)?.extract()?;
+    for (quantity, returned) in quantities.iter().zip(&returned[1..]) {
+        let name = quantity.name();
+        let own: PyArrayLikeDyn<'_, f64, AllowTypeChange> = returned.extract().map_err(|_| {
+            PyValueError::new_err(format!("the derivatives by {name} are no array of numbers"))
+        })?;
         let (own, expected) = (own.as_array(), quantity.shape(moments, vertices));
         if own.shape() != expected {
             let found = own.shape();
-            let name = quantity.name();
             let message =
                 format!("the derivatives by {name} have the shape {found:?}, and not {expected:?}");
             return Err(PyValueError::new_err(message));
@@ -179,12 +189,25 @@ pub(crate) fn gradient<'py>(
         moments,
         view,
     };
-    let gradient = run.gradient(&derivatives).map_err(failed)?;
+    let watched = py.detach(|| run.gradient_watched(&derivatives, &mut || signals.ask()));
+    let gradient = watched.map_err(|e| failed(py, &e, &mut signals))?;
+    for passed in &gradient.passed_by {
+        let message = CString::new(format!("it counted as constant: {}", passed.what))?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+    }
     let by_keys = PyDict::new(py);
     for (key, slope) in family.keys().iter().zip(&gradient.of_numbers) {
         by_keys.set_item(key, slope)?;
     }
     Ok((value, by_keys))
+}
+
+/// The exception of an error; after Ctrl-C that of the handler of signals.
+fn failed(py: Python<'_>, error: &AdjointError, signals: &mut Signals) -> PyErr {
+    match signals.raised.take() {
+        Some(raised) => raised,
+        None => plain(py, error),
+    }
 }
 
 /// The quantities at all moments of a run, one list for each.

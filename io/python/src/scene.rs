@@ -241,7 +241,7 @@ impl Scene {
     /// ``loss(times, positions)`` gets arrays of the shapes (T,) and (T, V, 3), at the start and after each
     /// step, and returns a number and its derivatives by the positions, of the same shape. Returns the number
     /// and a dictionary with its derivatives by the keys. What has no derivative raises `Error`, which names
-    /// it with its time, or counts as constant with ``branches="pass by"``.
+    /// it with its time, or counts as constant and is named by a warning with ``branches="pass by"``.
     ///
     /// The loss gets what ``also`` names as further arguments, and returns its derivatives by them, too:
     /// ``"velocities"`` (T, V, 3) in m/s, ``"support_forces"`` (T, V, 3), the force of supports on each vertex
@@ -256,14 +256,14 @@ impl Scene {
     ///     ...     slopes[-1, 3, 2] = 1.0
     ///     ...     return positions[-1, 3, 2], slopes
     ///     >>> value, slopes = scene.gradient(height, of=["sheet.density", "forces.gravity[2]"])
-    #[pyo3(signature = (loss, of, branches = "refuse", also = Vec::new(), sizes = HashMap::new()))]
+    #[pyo3(signature = (loss, of, branches = "refuse", also = Names::default(), sizes = HashMap::new()))]
     fn gradient<'py>(
         &self,
         py: Python<'py>,
         loss: &Bound<'py, PyAny>,
-        of: Vec<String>,
+        of: Names,
         branches: &str,
-        also: Vec<String>,
+        also: Names,
         sizes: HashMap<String, f64>,
     ) -> PyResult<Differentiated<'py>> {
         let branches = match branches {
@@ -274,6 +274,7 @@ impl Scene {
                 return Err(PyValueError::new_err(message));
             }
         };
+        let (of, also) = (of.0, also.0);
         let also: PyResult<Vec<Quantity>> = also.iter().map(|name| Quantity::named(name)).collect();
         if let Some((key, size)) = sizes
             .iter()
@@ -299,6 +300,21 @@ impl Scene {
 
     fn __repr__(&self) -> String {
         format!("<isosheet.Scene {}>", self.file.text().path.display())
+    }
+}
+
+/// A list of names; one text is a list of one name.
+#[derive(Default)]
+struct Names(Vec<String>);
+
+impl FromPyObject<'_, '_> for Names {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        Ok(Self(match object.extract() {
+            Ok(name) => vec![name],
+            Err(_) => object.extract()?,
+        }))
     }
 }
 

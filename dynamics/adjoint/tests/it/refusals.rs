@@ -12,6 +12,7 @@ use isosheet_dynamics::{
 };
 use isosheet_mesh::{Advice, EdgeId, MassKind, Sheet, VertexId, generate};
 use nalgebra::{Matrix3, Vector3};
+use std::ops::ControlFlow;
 
 /// A force that does not say how it depends on positions.
 #[derive(Debug)]
@@ -314,4 +315,25 @@ fn fallbacks_are_refused_or_named() {
     );
     assert!(expected, "{error}");
     assert!(error.to_string().contains("fallback"), "{error}");
+}
+
+/// Whoever watches may end a run, and the way back over it; losses that are no numbers are refused.
+#[test]
+fn what_is_ended_and_what_is_no_number() {
+    let family = |p: &[f64]| scene(rods(p)?);
+    let options = AdjointOptions::default;
+    let ends = &mut || ControlFlow::Break(());
+    let ended = Run::record_watched(&family, &[9.8], plan(), options(), ends);
+    assert!(matches!(ended.err(), Some(AdjointError::Interrupted)));
+    let run = Run::record(&family, &[9.8], plan(), options()).expect("a run");
+    let ended = run.gradient_watched(&coordinate(20, 2, 3), ends);
+    assert!(matches!(ended.err(), Some(AdjointError::Interrupted)));
+    let loss = |n: usize, state: &State| {
+        (n == 2).then(|| Share::of_state(f64::NAN, OfState::zeros(state.x.len())))
+    };
+    let error = run.gradient(&loss).expect_err("no number");
+    assert!(
+        matches!(error, AdjointError::LossValue { step: 2, .. }),
+        "{error}"
+    );
 }
