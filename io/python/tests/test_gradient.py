@@ -104,3 +104,17 @@ def test_the_size_of_a_place():
         scene({**edits, key: -0.0503 + s}).gradient(corner, of=[])[0] for s in (1e-7, -1e-7)
     )
     assert slopes[key] == pytest.approx((up - down) / 2e-7, rel=1e-2)
+
+
+def test_arrays_of_whole_numbers_lists_and_one_name_will_do():
+    def one(times, positions):
+        slopes = numpy.zeros(positions.shape, dtype=int)
+        slopes[-1, 24, 2] = 1
+        return [positions[-1, 24, 2], slopes]
+
+    _, slopes = scene().gradient(one, of=KEYS[0])
+    assert slopes == {KEYS[0]: scene().gradient(height, of=KEYS)[1][KEYS[0]]}
+    with pytest.raises(ValueError, match="nan"):
+        scene().gradient(lambda t, x: (float("nan"), 0 * x), of=KEYS)
+    with pytest.raises(isosheet.Error, match="no derivative"):
+        scene().gradient(height, of="stop.time")

@@ -123,7 +123,7 @@ impl SceneFamily {
         ];
         if let Some((name, _)) = ends.into_iter().find(|(_, is_given)| *is_given) {
             let message = format!("the scene ends by `stop.{name}`, and its end has no derivative");
-            let remedy = "leave it out, and end the scene at a time by `stop.time`";
+            let remedy = "end the scene at a time alone, for example with `stop = { time = 1.0 }`";
             return Err(DataError::new(message, remedy).into());
         }
         family.values()?;
