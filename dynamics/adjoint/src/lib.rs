@@ -1,6 +1,7 @@
 //! Gradients of runs: how a number that depends on positions, velocities, forces of supports and energies at
-//! chosen times, a *loss*, changes with whatever a scene says, by the discrete adjoint. A gradient costs less than
-//! the run, and for each parameter two scenes that are built, and evaluations of what the parameter changes.
+//! chosen times, a *loss*, changes with whatever a scene says, by the discrete adjoint. A gradient costs less
+//! than the run, and for each parameter two scenes that are built, and evaluations of what the parameter
+//! changes.
 //!
 //! | | |
 //! |---|---|
@@ -52,10 +53,10 @@
 //! remembers of its bends. See the page *Gradients* of the book for the derivation, and for when a gradient
 //! is true and useless.
 //!
-//! The derivatives of a step by a number are central differences of its *equations* at the states of the
-//! run, between two models that differ by a part 1e-5 of the number ([`AdjointOptions::difference`]): no
-//! other run is made, and whatever a closure can build has a derivative. By the states before they are those
-//! that terms, forces and potentials give.
+//! The derivatives of a step by a number are central differences of its *equations* at the states of the run,
+//! between two models that differ by a part 1e-5 of the number ([`AdjointOptions::difference`]): no other run
+//! is made, and whatever a closure can build has a derivative. By the states before they are those that
+//! terms, forces and potentials give.
 //!
 //! # What has no derivative
 //!

@@ -81,8 +81,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The forces `-J^T L / h^2` of the vertex constraints of a model at positions `x` and the time of the end
-    /// of a step (`3V`, newtons).
+    /// The forces `-J^T L / h^2` of the vertex constraints of a model at positions `x` and the time of the
+    /// end of a step (`3V`, newtons).
     pub(crate) fn forces(model: &SheetModel, step: &AcceptedStep, x: &[f64]) -> Vec<f64> {
         let t = step.start.t + step.span;
         let scale = -1.0 / (step.h * step.h);

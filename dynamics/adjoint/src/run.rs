@@ -21,10 +21,10 @@ type Steps = Vec<Vec<AcceptedStep>>;
 
 /// The difference of lengths at rest, as a part, over which equations of elastic sheets are compared.
 ///
-/// Sheets resist tension and pressure differently while they bend, so that the strains of the run, some 1e-7 in
-/// paper under its weight, have to be larger than those that the difference makes. The round-off of strains is
-/// 1e-15. Errors of the derivative of a height by a coordinate of the mesh, 8 x 4 squares of 25 mm that hang
-/// from an edge for ten steps, as parts of the largest of these derivatives:
+/// Sheets resist tension and pressure differently while they bend, so that the strains of the run, some 1e-7
+/// in paper under its weight, have to be larger than those that the difference makes. The round-off of
+/// strains is 1e-15. Errors of the derivative of a height by a coordinate of the mesh, 8 x 4 squares of 25 mm
+/// that hang from an edge for ten steps, as parts of the largest of these derivatives:
 ///
 /// | difference | paper, vertex 44 x | vertex 20 x | vertex 20 y | a tenth of the stiffness |
 /// |---|---|---|---|---|

@@ -256,8 +256,8 @@ impl<'o> Sweep<'o> {
         Ok(next)
     }
 
-    /// Adds `-w . dR/dp` and `-m . dc/dp` of a place to the derivatives by the numbers, and what these do to the
-    /// forces of vertex constraints.
+    /// Adds `-w . dR/dp` and `-m . dc/dp` of a place to the derivatives by the numbers, and what these do to
+    /// the forces of vertex constraints.
     fn numbers_back(
         &mut self,
         step: &AcceptedStep,

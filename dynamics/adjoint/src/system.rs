@@ -29,9 +29,9 @@ const UNSOLVED: f64 = 1e-6;
 /// K^T w + G^T m = l on the free vertices,   G w = 0,
 /// ```
 ///
-/// the derivative `K` of the residual of a step by the positions at its end, and those `l` of a loss. A loss of
-/// the forces `R / h^2` at pins and `-J^T L / h^2` of vertex constraints, with derivatives `f` by these, gives
-/// `w = -f / h^2` at pins, and `G w` its derivatives by `L`.
+/// the derivative `K` of the residual of a step by the positions at its end, and those `l` of a loss. A loss
+/// of the forces `R / h^2` at pins and `-J^T L / h^2` of vertex constraints, with derivatives `f` by these,
+/// gives `w = -f / h^2` at pins, and `G w` its derivatives by `L`.
 pub(crate) struct Request<'a, 'o> {
     pub(crate) simulation: &'a mut Simulation,
     pub(crate) step: &'a AcceptedStep,

@@ -264,8 +264,8 @@ impl ElasticSheet {
         parts.find(|part| !(least..=most).contains(part))
     }
 
-    /// The largest difference of the lengths of edges at rest from those of another sheet at a time, as a part;
-    /// nothing if it has another number of faces.
+    /// The largest difference of the lengths of edges at rest from those of another sheet at a time, as a
+    /// part; nothing if it has another number of faces.
     pub fn rest_difference(&self, other: &Self, t: f64) -> Option<f64> {
         let pairs = self.faces.iter().zip(&other.faces);
         let differences = pairs.map(|(own, other)| own.rest_difference(other, t));

@@ -71,8 +71,8 @@ pub trait Potential: Any + Debug + Send + Sync {
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
 
-    /// Which parts of another potential have other energies than its own at some time, positions or memory, as
-    /// far as that can be told by numbers: whoever compares models evaluates these alone. The default
+    /// Which parts of another potential have other energies than its own at some time, positions or memory,
+    /// as far as that can be told by numbers: whoever compares models evaluates these alone. The default
     /// cannot tell, and says all.
     fn difference(&self, _other: &dyn Potential) -> Difference {
         Difference::Everything
@@ -513,7 +513,7 @@ pub enum CouplingKind {
 pub enum Difference {
     /// None: the potentials are the same.
     Nothing,
-    /// Those with these numbers, in order, such as faces.
+    /// The parts with these numbers, in order, such as faces.
     Parts(Vec<u32>),
     /// All, or which ones cannot be told.
     Everything,

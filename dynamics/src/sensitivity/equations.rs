@@ -135,8 +135,8 @@ impl<'a> StepEquations<'a> {
         Ok(())
     }
 
-    /// As [`StepEquations::residual`], of some parts of the potentials alone, one entry for each; of all where
-    /// there is no list. Models that are compared differ by these.
+    /// As [`StepEquations::residual`], of some parts of the potentials alone, one entry for each; of all
+    /// where there is no list. Models that are compared differ by these.
     pub fn residual_of(
         &mut self,
         parts: &[Difference],

@@ -1,7 +1,7 @@
 //! Gradients of runs.
 
 use crate::error::plain;
-use crate::scene::Signals;
+use crate::signals::Signals;
 use isosheet_adjoint::{
     AdjointError, AdjointOptions, Energies, Loss, Moment, OfMoments, OfState, Run, Share, View,
 };

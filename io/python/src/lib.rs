@@ -27,6 +27,7 @@ mod recorder;
 mod report;
 mod run;
 mod scene;
+mod signals;
 mod simulation;
 mod value;
 

@@ -4,18 +4,16 @@ use crate::error::{of_file, of_run};
 use crate::gradient::{Differentiated, Quantity, gradient};
 use crate::mesh::Mesh;
 use crate::recorded::Run;
+use crate::signals::Signals;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
 use isosheet_adjoint::{AdjointOptions, Branches};
 use isosheet_runs as run;
-use isosheet_runs::{StepPart, Tick, Watch};
 use isosheet_scenes::{Key, SceneFile, SceneFileError, StartingPoint};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::collections::HashMap;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 use toml::Value;
 
 /// A scene: everything that decides how a simulation goes. The keys are the keys of scene files.
@@ -244,12 +242,13 @@ impl Scene {
     /// it with its time, or counts as constant and is named by a warning with ``branches="pass by"``.
     ///
     /// The loss gets what ``also`` names as further arguments, and returns its derivatives by them, too:
-    /// ``"velocities"`` (T, V, 3) in m/s, ``"support_forces"`` (T, V, 3), the force of supports on each vertex
-    /// in N, zero at the start, and ``"energies"`` (T, 2), the kinetic and the potential energy without
-    /// contact in J.
+    /// ``"velocities"`` (T, V, 3) in m/s, ``"support_forces"`` (T, V, 3), the force of supports on each
+    /// vertex in N, zero at the start, and ``"energies"`` (T, 2), the kinetic and the potential energy
+    /// without contact in J.
     ///
-    /// ``sizes`` has the sizes of keys whose values say little about them, such as places of obstacles: by how
-    /// much each has to change to make another scene. Of a place that is the distance at which contact acts.
+    /// ``sizes`` has the sizes of keys whose values say little about them, such as places of obstacles: by
+    /// how much each has to change to make another scene. Of a place that is the distance at which contact
+    /// acts.
     ///
     ///     >>> def height(times, positions):
     ///     ...     slopes = numpy.zeros_like(positions)
@@ -315,45 +314,5 @@ impl FromPyObject<'_, '_> for Names {
             Ok(name) => vec![name],
             Err(_) => object.extract()?,
         }))
-    }
-}
-
-/// Asks Python now and then whether Ctrl-C was pressed.
-#[derive(Default)]
-pub(crate) struct Signals {
-    asked: Option<Instant>,
-    /// The exception of a handler of signals, once it has been raised.
-    pub(crate) raised: Option<PyErr>,
-}
-
-/// Time between two questions: nobody notices a tenth of a second, and a thread of Python that computes hands
-/// over the interpreter every 5 ms.
-const PATIENCE: Duration = Duration::from_millis(100);
-
-impl Signals {
-    /// Whether to go on.
-    pub(crate) fn ask(&mut self) -> ControlFlow<()> {
-        let now = Instant::now();
-        if *self.asked.get_or_insert(now) + PATIENCE > now {
-            return ControlFlow::Continue(());
-        }
-        self.asked = Some(now);
-        match Python::attach(|py| py.check_signals()) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                self.raised = Some(error);
-                ControlFlow::Break(())
-            }
-        }
-    }
-}
-
-impl Watch for Signals {
-    fn within_step(&mut self, _part: &StepPart) -> ControlFlow<()> {
-        self.ask()
-    }
-
-    fn step(&mut self, _tick: &Tick) -> ControlFlow<()> {
-        self.ask()
     }
 }

@@ -114,7 +114,7 @@ def test_arrays_of_whole_numbers_lists_and_one_name_will_do():
 
     _, slopes = scene().gradient(one, of=KEYS[0])
     assert slopes == {KEYS[0]: scene().gradient(height, of=KEYS)[1][KEYS[0]]}
-    with pytest.raises(ValueError, match="nan"):
+    with pytest.raises(ValueError, match="NaN"):
         scene().gradient(lambda t, x: (float("nan"), 0 * x), of=KEYS)
     with pytest.raises(isosheet.Error, match="no derivative"):
         scene().gradient(height, of="stop.time")

@@ -104,8 +104,8 @@ fn load(stiffness: f64, length: f64, shortened: f64) -> f64 {
     4.0 * first * first * stiffness / (length * length)
 }
 
-/// Euler's load of a strip by its length, just beyond the point where it buckles: the force on its ends, which
-/// are at a fixed distance from its length.
+/// Euler's load of a strip by its length, just beyond the point where it buckles: the force on its ends,
+/// which are at a fixed distance from its length.
 #[test]
 fn eulers_load_by_the_length() {
     let (cells, width, rigidity, shortened) = (24, 0.03, 1e-3, 1.5e-3);

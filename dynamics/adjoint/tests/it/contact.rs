@@ -127,7 +127,8 @@ const FACES: [[u32; 3]; 12] = [
     [3, 7, 5],
 ];
 
-/// A block over an inclined plane: gravity, friction, its mass; `above` is the distance from the plane, metres.
+/// A block over an inclined plane: gravity, friction, its mass; `above` is the distance from the plane,
+/// metres.
 fn block(p: &[f64], above: f64) -> Result<Scene, SceneError> {
     let plane = Isometry3::rotation(Vector3::new(0.0, 0.5, 0.0));
     let pose = plane

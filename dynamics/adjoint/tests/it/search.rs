@@ -52,8 +52,8 @@ pub(crate) fn lead_by_gradients<'a>(
     }
 }
 
-/// Decreases a loss from a start, in so many evaluations. The inverse of its second derivatives is first taken
-/// to be `scale` times the identity.
+/// Decreases a loss from a start, in so many evaluations. The inverse of its second derivatives is first
+/// taken to be `scale` times the identity.
 pub(crate) fn minimise(
     mut evaluate: impl FnMut(&[f64]) -> Option<(f64, Vec<f64>)>,
     start: &[f64],

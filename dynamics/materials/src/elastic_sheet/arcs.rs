@@ -57,8 +57,8 @@ impl Arcs {
         }
     }
 
-    /// Marks the faces whose memories of a state may be others by others arcs, with other elastic faces; false
-    /// where these are not of the same faces.
+    /// Marks the faces whose memories of a state may be others by other arcs, with other elastic faces;
+    /// false where these are not of the same faces.
     pub(super) fn add_difference(
         &self,
         other: &Self,
@@ -219,7 +219,7 @@ impl Arcs {
         bends.map(|(k, bend)| self.beyond_rest(k, bend))
     }
 
-    /// That of one of its faces.
+    /// The bend of one of its faces beyond the one without stress, without slack.
     fn bend(&self, faces: &[Face], here: At<'_>, k: usize) -> Bend {
         let at = At::new(here.t, &here.x[self.coordinates.clone()]);
         let face = &faces[self.faces.start + k];
