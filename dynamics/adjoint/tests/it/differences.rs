@@ -339,7 +339,7 @@ fn swollen() {
     checked("swollen", &family, &[1e-3], &plan, &loss, 5e-5);
 }
 
-/// A flag in the wind: its velocity, the density of the air, and the damping.
+/// A flag in the wind: its velocity, the density of the air, the damping, and the motion of a corner.
 #[test]
 fn in_the_wind() {
     let family = |p: &[f64]| -> Result<Scene, SceneError> {
@@ -350,10 +350,12 @@ fn in_the_wind() {
             wind: Wind::Uniform([x, y, z]),
             ..Air::default()
         };
-        let held = [VertexId(0), VertexId(8)];
+        let [a, b, c] = sheet.position(VertexId(8));
+        let drive = p[3];
         let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
             .with_gravity()
-            .with_pins(&held)?
+            .with_pins(&[VertexId(0)])?
+            .with_moving_pin(VertexId(8), move |t: f64| [a, b, c + drive * t * t])?
             .with_elastic_sheet(ElasticSheet::new(&sheet, 300.0, 0.3)?)?
             .with_damping(p[2])?
             .with_air(air)?;
@@ -361,7 +363,8 @@ fn in_the_wind() {
     };
     let plan = Plan::steps(bdf2(), 5e-3, 10);
     let loss = coordinate(40, 1, 10);
-    checked("in the wind", &family, &[3.0, 1.2, 0.7], &plan, &loss, 1e-6);
+    let numbers = [3.0, 1.2, 0.7, 2.0];
+    checked("in the wind", &family, &numbers, &plan, &loss, 1e-6);
 }
 
 /// Positions and velocities at the start, against differences of runs.
@@ -394,7 +397,7 @@ fn the_state_at_the_start() {
     }
 }
 
-/// A membrane that a pressure blows up, held by its edge, and a tent that a gas blows up.
+/// A membrane that a pressure blows up, held by its edge, which tilts, and a tent that a gas blows up.
 #[test]
 fn blown_up() {
     let open = |p: &[f64]| -> Result<Scene, SceneError> {
@@ -405,15 +408,19 @@ fn blown_up() {
             .vertex_ids()
             .filter(|v| t.is_boundary_vertex(*v))
             .collect();
-        let model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
-            .with_pins(&edge)?
+        let mut model = SheetModel::new(&sheet, 4e-3, MassKind::Lumped)?
             .with_elastic_sheet(ElasticSheet::new(&sheet, p[1], 0.3)?)?
             .with_pressure(faces, p[0])?;
+        let drive = p[2];
+        for v in edge {
+            let [x, y, z] = sheet.position(v);
+            model = model.with_moving_pin(v, move |t: f64| [x, y, z + drive * x * t * t])?;
+        }
         Ok(as_meshed(model, &sheet))
     };
     let plan = Plan::steps(bdf2(), 5e-3, 10);
     let loss = coordinate(20, 2, 10);
-    checked("blown up", &open, &[5.0, 300.0], &plan, &loss, 1e-6);
+    checked("blown up", &open, &[5.0, 300.0, 3.0], &plan, &loss, 1e-6);
     let closed = |p: &[f64]| -> Result<Scene, SceneError> {
         let corners = vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1];
         let tent = Sheet::new(corners, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
