@@ -131,7 +131,7 @@ pub(crate) fn gradient<'py>(
     loss: &Bound<'py, PyAny>,
     of: Vec<String>,
     also: &[Quantity],
-    options: AdjointOptions,
+    mut options: AdjointOptions,
 ) -> PyResult<Differentiated<'py>> {
     let text = file.text();
     let family = SceneFamily::of_text(&text.text, &text.path, Vec::new(), of);

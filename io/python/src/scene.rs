@@ -246,9 +246,8 @@ impl Scene {
     /// vertex in N, zero at the start, and ``"energies"`` (T, 2), the kinetic and the potential energy
     /// without contact in J.
     ///
-    /// ``sizes`` has the sizes of keys whose values say little about them, such as places of obstacles: by
-    /// how much each has to change to make another scene. Of a place that is the distance at which contact
-    /// acts.
+    /// ``sizes`` has the sizes of keys whose values say little about them: by how much each has to change to
+    /// make another scene. Positions of obstacles and bodies have theirs.
     ///
     ///     >>> def height(times, positions):
     ///     ...     slopes = numpy.zeros_like(positions)

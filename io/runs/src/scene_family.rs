@@ -157,6 +157,25 @@ impl SceneFamily {
         self.keys.iter().map(number).collect()
     }
 
+    /// The sizes of the values for [`AdjointOptions::sizes`](isosheet_adjoint::AdjointOptions::sizes): of
+    /// positions of obstacles and bodies the distance at which contact acts, and zeros of all others, which
+    /// are as large as they are.
+    ///
+    /// # Errors
+    /// [`SceneFamilyError`] if the scene cannot be built.
+    pub fn sizes(&self) -> Result<Vec<f64>, SceneFamilyError> {
+        let setup = self.file(&[])?.build().map_err(SceneFileError::from)?;
+        let distance = setup.contacts.map(|contacts| contacts.options().activation);
+        let is_place = |key: &String| {
+            let holds = ["obstacle[", "body["]
+                .iter()
+                .any(|own| key.starts_with(own));
+            holds && key.contains(".position[")
+        };
+        let size = |key: &String| distance.filter(|_| is_place(key)).unwrap_or(0.0);
+        Ok(self.keys.iter().map(size).collect())
+    }
+
     /// The method and the steps of the scene, up to its time. The tolerance of the steps is 1e-10
     /// ([`ImplicitOptions::tolerance`]), as the gradient is that of equations which are solved.
     ///
@@ -353,6 +372,40 @@ time = 0.2
             let error = SceneFamily::of_text(TEXT, path, edits, keys).expect_err("an end");
             assert!(error.to_string().contains("stop."), "{error}");
         }
+    }
+
+    /// A ball at the origin: the size of its place is not one metre.
+    #[test]
+    fn places_of_obstacles_have_the_size_of_the_contact() {
+        let edits = [
+            "obstacle=[{shape={sphere={radius=0.05}},pose={position=[0,0,-0.0506]}}]",
+            "contact={}",
+            "support=[]",
+        ];
+        let keys = ["obstacle[0].pose.position[0]", "forces.gravity[2]"].map(str::to_owned);
+        let edits = edits.map(str::to_owned).to_vec();
+        let path = Path::new("paper.toml");
+        let family = SceneFamily::of_text(TEXT, path, edits, keys.to_vec()).expect("keys");
+        let [place, gravity] = family.sizes().expect("sizes")[..] else {
+            panic!("two sizes");
+        };
+        assert!(place > 0.0 && place < 0.01 && gravity == 0.0, "{place}");
+        let (plan, values) = (family.plan().expect("steps"), family.values().expect("two"));
+        let options = AdjointOptions {
+            sizes: family.sizes().expect("sizes"),
+            ..AdjointOptions::default()
+        };
+        let loss = coordinate(24, 2, 6);
+        let value = |change: f64| {
+            let numbers = [values[0] + change, values[1]];
+            let run = Run::record(&family, &numbers, plan.clone(), options.clone());
+            run.expect("a run").value(&loss).expect("a height")
+        };
+        let run = Run::record(&family, &values, plan.clone(), options.clone());
+        let found = run.expect("a run").gradient(&loss).expect("a gradient");
+        let slope = (value(1e-7) - value(-1e-7)) / 2e-7;
+        let error = found.of_numbers[0] / slope - 1.0;
+        assert!(error.abs() < 1e-3, "{} {slope}", found.of_numbers[0]);
     }
 
     #[test]
