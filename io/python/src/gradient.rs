@@ -138,6 +138,12 @@ pub(crate) fn gradient<'py>(
     let family = family.map_err(|e| plain(py, &e))?;
     let plan = family.plan().map_err(|e| plain(py, &e))?;
     let values = family.values().map_err(|e| plain(py, &e))?;
+    let sizes = family.sizes().map_err(|e| plain(py, &e))?;
+    for (given, size) in options.sizes.iter_mut().zip(sizes) {
+        if *given == 0.0 {
+            *given = size;
+        }
+    }
     let mut signals = Signals::default();
     let watched =
         py.detach(|| Run::record_watched(&family, &values, plan, options, &mut || signals.ask()));
