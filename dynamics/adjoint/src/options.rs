@@ -38,8 +38,8 @@ pub struct AdjointOptions {
     /// step. Default 12: at 1089 vertices a factorisation takes as long as some twenty solves.
     pub patience: usize,
     /// Part of the size of a number over which the derivatives of the equations of a step by it are central
-    /// differences. Default 1e-5: what is left out is a part 1e-10, and the round-off as much. It is less where
-    /// lengths of elastic sheets at rest would differ by more than a part 1e-8.
+    /// differences. Default 1e-5: what is left out is a part 1e-10, and the round-off as much. It is less
+    /// where lengths of elastic sheets at rest would differ by more than a part 1e-8.
     pub difference: f64,
     /// The sizes of the numbers of the scene: by how much each has to change to make another scene, in its
     /// own unit. Of places of bodies that is the distance at which the barrier of contact acts. Default, and
