@@ -312,6 +312,10 @@ impl Fit {
         folder: &Path,
         watch: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Result<DVector<f64>, FitError> {
+        // (A run of one step asks nobody before its end.)
+        if watch().is_break() {
+            return Err(FitError::Interrupted);
+        }
         let failed = |source: RunError| FitError::Run {
             edits: self.edits_at(at).join(", "),
             source,
