@@ -40,6 +40,7 @@ use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
 pub use membrane::{MembraneLaw, OrthotropicMembrane};
+use nalgebra::Vector3;
 use std::any::Any;
 use std::ops::Range;
 use swelling::Swelling;
@@ -440,6 +441,34 @@ impl ElasticSheet {
     }
 }
 
+impl ElasticSheet {
+    /// Adds `scale` times derivatives by what is remembered: of each face those by the chords of its bend, by
+    /// the squared bend, and by the stiffness of the barrier.
+    fn add_of_faces(
+        &self,
+        at: At<'_>,
+        scale: f64,
+        of_memory: &mut [f64],
+        derivatives: impl Fn(&Face, &Bend) -> (Vector3<f64>, f64, f64),
+    ) {
+        let [of_barrier, of_bends @ ..] = of_memory else {
+            return;
+        };
+        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
+        let rows = of_bends.as_chunks_mut::<NUMBERS>().0.iter_mut();
+        for ((face, bend), row) in self.faces.iter().zip(bends).zip(rows) {
+            let (chords, squared, stiffness) = derivatives(face, &Bend::remembered(bend));
+            *of_barrier += scale * stiffness;
+            if !self.arcs.is_empty() {
+                row.iter_mut()
+                    .zip(&chords)
+                    .for_each(|(r, c)| *r += scale * c);
+                row[4] += scale * squared;
+            }
+        }
+    }
+}
+
 impl Potential for ElasticSheet {
     fn energy(&self, at: At<'_>) -> f64 {
         self.evaluated.evaluate(&self.faces, at, |states| {
@@ -629,15 +658,13 @@ impl Remembering for ElasticSheet {
         (found, choices): (&[f64], &[f64]),
         of: &[f64],
     ) -> f64 {
-        let mut memory = found.to_vec();
         let Some(parts) = parts else {
+            let mut memory = found.to_vec();
             self.settle_by(choices, state, &mut memory);
             return dot(of, &memory);
         };
         let here = At::new(state.t, state.x);
-        let [_, bends @ ..] = &mut memory[..] else {
-            return 0.0;
-        };
+        let bends = found.get(1..).unwrap_or_default();
         let of = of[1..].as_chunks::<NUMBERS>().0;
         let mut sum = 0.0;
         let mut choices = choices;
@@ -662,20 +689,9 @@ impl Remembering for ElasticSheet {
         of_memory: &mut [f64],
     ) -> Result<(), NoDerivative> {
         let barrier = barrier_of(at.memory);
-        let [of_barrier, of_bends @ ..] = of_memory else {
-            return Ok(());
-        };
-        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
-        let rows = of_bends.as_chunks_mut::<NUMBERS>().0.iter_mut();
-        for ((face, bend), row) in self.faces.iter().zip(bends).zip(rows) {
-            let bend = Bend::remembered(bend);
-            let (chords, squared, stiffness) = face.products(at, &bend, barrier, w);
-            *of_barrier += stiffness;
-            if !self.arcs.is_empty() {
-                row.iter_mut().zip(&chords).for_each(|(r, c)| *r += c);
-                row[4] += squared;
-            }
-        }
+        self.add_of_faces(at, 1.0, of_memory, |face, bend| {
+            face.products(at, bend, barrier, w)
+        });
         Ok(())
     }
 
@@ -686,22 +702,9 @@ impl Remembering for ElasticSheet {
         of_memory: &mut [f64],
     ) -> Result<(), NoDerivative> {
         let barrier = barrier_of(at.memory);
-        let [of_barrier, of_bends @ ..] = of_memory else {
-            return Ok(());
-        };
-        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
-        let rows = of_bends.as_chunks_mut::<NUMBERS>().0.iter_mut();
-        for ((face, bend), row) in self.faces.iter().zip(bends).zip(rows) {
-            let bend = Bend::remembered(bend);
-            let (chords, squared, stiffness) = face.slopes(at, &bend, barrier);
-            *of_barrier += scale * stiffness;
-            if !self.arcs.is_empty() {
-                row.iter_mut()
-                    .zip(&chords)
-                    .for_each(|(r, c)| *r += scale * c);
-                row[4] += scale * squared;
-            }
-        }
+        self.add_of_faces(at, scale, of_memory, |face, bend| {
+            face.slopes(at, bend, barrier)
+        });
         Ok(())
     }
 

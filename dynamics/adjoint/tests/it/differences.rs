@@ -1,7 +1,7 @@
 //! Gradients of runs without contact.
 
 use crate::problems::{as_meshed, exact};
-use crate::support::{bdf2, checked};
+use crate::support::{bdf2, checked, shell};
 use isosheet_adjoint::{Plan, Scene, SceneError, coordinate};
 use isosheet_dynamics::{
     Air, CreaseSpring, CreaseSprings, Curl, Curvature, ElasticSheet, Gas, LoadedFaces, Material,
@@ -9,13 +9,6 @@ use isosheet_dynamics::{
     State, VertexLoad, Wind,
 };
 use isosheet_mesh::{FaceId, MassKind, Sheet, VertexId, generate};
-
-/// A sheet that is curved in two directions, so that no rod depends on others.
-fn shell() -> Result<Sheet, SceneError> {
-    let square = generate::isotropic_square(2, 0.2)?;
-    let lifted = square.map_positions(|[x, y, _]| [x, y, 2.0 * x * (x - 0.3 * y) + y * y])?;
-    Ok(lifted)
-}
 
 /// A film that is soft in its plane. (Steps of stiffer sheets end where the round-off of their energy hides
 /// what is left of the forces, a part 1e-5 of them, and differences of runs are no better.)

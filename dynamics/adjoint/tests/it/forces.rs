@@ -1,7 +1,7 @@
 //! Losses of the forces of supports and of energies.
 
 use crate::problems::{as_meshed, exact};
-use crate::support::{bdf2, checked};
+use crate::support::{bdf2, checked, shell};
 use isosheet_adjoint::{
     AdjointOptions, Kept, Moment, OfMoments, OfState, Plan, Run, Scene, SceneError, Share, energy,
     support_force,
@@ -12,13 +12,7 @@ use isosheet_dynamics::{
     Curl, Curvature, ElasticSheet, JointCoordinate, JointSpring, Material, MaterialDirection,
     Method, NaturalTensor, RigidBody, SheetModel, Simulation, State, VertexConstraint,
 };
-use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
-
-/// A sheet that is curved in two directions, so that no rod depends on others.
-fn shell() -> Result<Sheet, SceneError> {
-    let square = generate::isotropic_square(2, 0.2)?;
-    Ok(square.map_positions(|[x, y, _]| [x, y, 2.0 * x * (x - 0.3 * y) + y * y])?)
-}
+use isosheet_mesh::{MassKind, MassMatrix, VertexId, generate};
 
 /// Half the square of the force on some vertices at each step, so that every step takes part.
 fn squared_forces(

@@ -1,8 +1,15 @@
 //! Gradients beside central differences of whole runs.
 
 use crate::problems::exact;
-use isosheet_adjoint::{AdjointOptions, Family, Gradient, Loss, Plan, Run};
+use isosheet_adjoint::{AdjointOptions, Family, Gradient, Loss, Plan, Run, SceneError};
 use isosheet_dynamics::Method;
+use isosheet_mesh::{Sheet, generate};
+
+/// A sheet that is curved in two directions, so that no rod depends on others.
+pub(crate) fn shell() -> Result<Sheet, SceneError> {
+    let square = generate::isotropic_square(2, 0.2)?;
+    Ok(square.map_positions(|[x, y, _]| [x, y, 2.0 * x * (x - 0.3 * y) + y * y])?)
+}
 
 pub(crate) fn bdf2() -> Method {
     Method::Bdf2(exact())

@@ -5,7 +5,7 @@ mod derivatives;
 use super::bend::{Bend, NUMBERS};
 use super::curved::CurvedFace;
 use super::face::Face;
-use super::surroundings::{Surroundings, largest_of_mean};
+use super::surroundings::{Neighbour, Surroundings, largest_of_mean};
 use crate::evaluation::Room;
 use crate::plate_bending::PlateBending;
 use crate::plate_bending::SecondDerivatives;
@@ -149,11 +149,8 @@ impl Arcs {
                 .numbers();
             }
             for (k, around) in self.around.iter().enumerate() {
-                let bends = around.iter().map(|f| Bend::remembered(&rows[f.face]));
-                let most = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
-                let mean =
-                    |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
-                let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
+                let squared = |f: usize| Bend::remembered(&rows[f]).own;
+                let wanted = wanted(own, k, around, squared, |f| &stresses[f]);
                 let bend = Bend::remembered(&rows[k]);
                 rows[k] = slack(&own[k], bend, wanted).numbers();
             }
@@ -167,13 +164,13 @@ impl Arcs {
         &self,
         faces: &[Face],
         here: At<'_>,
-        memory: &mut [f64],
+        memory: &[f64],
         parts: &[u32],
         mut slack: impl FnMut(usize, &Face, Bend, f64) -> Bend,
         mut take: impl FnMut(usize, Bend),
     ) {
         let own = &faces[self.faces.clone()];
-        let rows = &*self.rows(memory);
+        let rows = &memory.as_chunks::<NUMBERS>().0[self.faces.clone()];
         let mut known: Vec<Option<(Bend, [Vector3<f64>; 2])>> = vec![None; own.len()];
         let first = self.faces.start;
         let own_parts = parts.iter().map(|k| *k as usize);
@@ -190,11 +187,7 @@ impl Arcs {
                 });
             }
             let of = |f: usize| known[f].as_ref().expect("it has been made");
-            let most = around
-                .iter()
-                .fold(0.0, |most: f64, f| most.max(of(f.face).0.own));
-            let mean = |which: usize| largest_of_mean(around, |f| (own[f].area(), of(f).1[which]));
-            let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
+            let wanted = wanted(own, k, around, |f| of(f).0.own, |f| &of(f).1);
             let Bend {
                 squared, credit, ..
             } = Bend::remembered(&rows[k]);
@@ -233,6 +226,22 @@ impl Arcs {
         }
         bend
     }
+}
+
+/// The squared bend that the slack of a face is wanted for: that of the face around it which bends most, as
+/// far as the tension around it leaves it. `stresses` gives the stress of a face, and that of its material
+/// alone.
+fn wanted<'a>(
+    faces: &[Face],
+    k: usize,
+    around: &[Neighbour],
+    squared: impl Fn(usize) -> f64,
+    stresses: impl Fn(usize) -> &'a [Vector3<f64>; 2],
+) -> f64 {
+    let squares = around.iter().map(|f| squared(f.face));
+    let most = squares.fold(0.0, f64::max);
+    let mean = |which: usize| largest_of_mean(around, |f| (faces[f].area(), stresses(f)[which]));
+    faces[k].left_by(mean(0).min(mean(1))) * most
 }
 
 /// The bends of faces, each with its own square.
